@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef RSSTAB_IGF_BASE_RS_MOTION_SOURCE_H_
+#define RSSTAB_IGF_BASE_RS_MOTION_SOURCE_H_
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "igf/base/frame.h"
+#include "igf/base/motion_field.h"
+#include "igf/base/result.h"
+
+namespace rsstab {
+
+// The frame whose readout motion is asked for.
+struct FrameContext {
+  std::int64_t index = 0;            // counted from 0 in presentation order
+  double time_s = 0.0;               // time of the middle row, video clock
+  const FrameView* image = nullptr;  // null when NeedsImage() is false
+};
+
+struct RsMotion {
+  MotionField field;       // reference row: the middle
+  double spread_px = 0.0;  // one standard deviation of the field, px; 0 = exact
+};
+
+// Tells how the camera moved while one frame was read out. Implementations: a gyro log (igf), a
+// single image (rsdiff), the fusion of all (stabilizer).
+class RsMotionSource {
+ public:
+  virtual ~RsMotionSource() = default;
+
+  // What the log and the analysis file call it: "gyro", "diffusion".
+  [[nodiscard]] virtual std::string Name() const = 0;
+
+  // True when EstimateMotion looks at the picture (pass 1 then keeps it at hand).
+  [[nodiscard]] virtual bool NeedsImage() const = 0;
+
+  // Motion of one frame. kUntrustworthy when this frame cannot be told (a gap in the log): the
+  // caller then leaves the frame as it is. Any order of frames; not thread safe.
+  [[nodiscard]] virtual Result<RsMotion> EstimateMotion(const FrameContext& frame) = 0;
+
+  // Camera orientation at a time of the video clock, where the source knows it; camera_from_world.
+  [[nodiscard]] virtual std::optional<Eigen::Quaterniond> CameraFromWorld(double time_s) const {
+    (void)time_s;
+    return std::nullopt;
+  }
+};
+
+}  // namespace rsstab
+
+#endif  // RSSTAB_IGF_BASE_RS_MOTION_SOURCE_H_
