@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "igf/orientation_track.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "igf/base/rotation.h"
+
+namespace rsstab::igf {
+namespace {
+
+constexpr double kMinQuaternionNorm = 1e-6;
+// A guessed index this close to the right one is walked to; farther away, bisection is quicker.
+constexpr int kMaxSteps = 4;
+
+}  // namespace
+
+Result<OrientationTrack> OrientationTrack::Create(
+    std::vector<double> times_s, std::vector<Eigen::Quaterniond> world_from_camera) {
+  if (times_s.size() != world_from_camera.size() || times_s.size() < 2) {
+    return Fail(ErrorCode::kInvalidArgument,
+                "an orientation track needs at least two samples and as many times as "
+                "orientations, not {} times and {} orientations",
+                times_s.size(), world_from_camera.size());
+  }
+  for (std::size_t i = 0; i < times_s.size(); ++i) {
+    if (!std::isfinite(times_s[i]) || (i > 0 && !(times_s[i] > times_s[i - 1]))) {
+      return Fail(ErrorCode::kInvalidArgument,
+                  "orientation sample {} at {} s: times must be finite and increase", i,
+                  times_s[i]);
+    }
+    const double norm = world_from_camera[i].norm();
+    if (!std::isfinite(norm) || norm < kMinQuaternionNorm) {
+      return Fail(ErrorCode::kInvalidArgument,
+                  "orientation sample {} at {} s: the quaternion has no direction", i, times_s[i]);
+    }
+    world_from_camera[i].coeffs() /= norm;
+  }
+  return OrientationTrack(std::move(times_s), std::move(world_from_camera));
+}
+
+OrientationTrack::OrientationTrack(std::vector<double> times_s,
+                                   std::vector<Eigen::Quaterniond> world_from_camera)
+    : times_s_(std::move(times_s)),
+      world_from_camera_(std::move(world_from_camera)),
+      intervals_per_s_(static_cast<double>(times_s_.size() - 1) /
+                       (times_s_.back() - times_s_.front())) {}
+
+bool OrientationTrack::Covers(double from_s, double to_s) const {
+  return std::min(from_s, to_s) >= start_s() && std::max(from_s, to_s) < end_s();
+}
+
+std::optional<Eigen::Quaterniond> OrientationTrack::CameraFromWorld(double time_s) const {
+  const auto world_from_camera = WorldFromCamera(time_s);
+  if (!world_from_camera) {
+    return std::nullopt;
+  }
+  return world_from_camera->conjugate();
+}
+
+std::optional<Eigen::Vector3d> OrientationTrack::MeanRate(double from_s, double to_s) const {
+  const auto from = WorldFromCamera(from_s);
+  const auto to = WorldFromCamera(to_s);
+  if (!from || !to || !(to_s > from_s)) {
+    return std::nullopt;
+  }
+  return LogSo3(Eigen::Quaterniond(from->conjugate() * *to)) / (to_s - from_s);
+}
+
+OrientationTrack OrientationTrack::WithOffset(double offset_s) const {
+  OrientationTrack shifted = *this;
+  shifted.offset_s_ += offset_s;
+  return shifted;
+}
+
+std::optional<Eigen::Quaterniond> OrientationTrack::WorldFromCamera(double time_s) const {
+  const double t = time_s - offset_s_;
+  // Written so that NaN is outside.
+  if (!(t >= times_s_.front() && t < times_s_.back())) {
+    return std::nullopt;
+  }
+  const std::size_t i = IntervalAt(t);
+  const double share = (t - times_s_[i]) / (times_s_[i + 1] - times_s_[i]);
+  return world_from_camera_[i].slerp(share, world_from_camera_[i + 1]);
+}
+
+std::size_t OrientationTrack::IntervalAt(double t) const {
+  const std::size_t last = times_s_.size() - 2;
+  auto i = std::min(static_cast<std::size_t>((t - times_s_.front()) * intervals_per_s_), last);
+  // Logs are nearly uniform: the guess is right or next to it.
+  for (int step = 0; step < kMaxSteps; ++step) {
+    if (t < times_s_[i]) {
+      --i;
+    } else if (t >= times_s_[i + 1]) {
+      ++i;
+    } else {
+      return i;
+    }
+  }
+  const auto after = std::upper_bound(times_s_.begin(), times_s_.end(), t);
+  return static_cast<std::size_t>(after - times_s_.begin()) - 1;
+}
+
+}  // namespace rsstab::igf

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef RSSTAB_IGF_ORIENTATION_TRACK_H_
+#define RSSTAB_IGF_ORIENTATION_TRACK_H_
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "igf/base/result.h"
+
+namespace rsstab::igf {
+
+// Where a camera looked, as a function of time: samples joined by SLERP (constant rate about a
+// fixed axis between two samples). Valid over the half-open span [start_s(), end_s()), so that two
+// tracks laid end to end cover every instant exactly once.
+//
+// Camera axes: x right, y down, z forward. Orientations come in as world_from_camera, the form that
+// integrating body rates gives (q <- q exp(w dt)); they are inverted here, once, and leave as
+// camera_from_world. Const methods may be called from several threads.
+class OrientationTrack {
+ public:
+  // `times_s` in seconds, strictly increasing, at least two; `world_from_camera` as many
+  // quaternions of any length above zero (normalised here).
+  // Errors: kInvalidArgument naming the first sample that breaks a rule.
+  [[nodiscard]] static Result<OrientationTrack> Create(
+      std::vector<double> times_s, std::vector<Eigen::Quaterniond> world_from_camera);
+
+  [[nodiscard]] double start_s() const { return times_s_.front() + offset_s_; }
+  [[nodiscard]] double end_s() const { return times_s_.back() + offset_s_; }
+
+  // True when [from_s, to_s] (either order) lies within the span.
+  [[nodiscard]] bool Covers(double from_s, double to_s) const;
+
+  // R(t): world directions to camera directions. Empty outside the span.
+  [[nodiscard]] std::optional<Eigen::Quaterniond> CameraFromWorld(double time_s) const;
+
+  // Mean angular rate of the camera between two instants, rad/s, in the camera axes at `from_s`:
+  // the constant body rate that leads from one orientation to the other. Empty outside the span or
+  // unless to_s > from_s.
+  [[nodiscard]] std::optional<Eigen::Vector3d> MeanRate(double from_s, double to_s) const;
+
+  // The same motion on a clock that shows `offset_s` more: t_video = t_gyro + offset_s.
+  [[nodiscard]] OrientationTrack WithOffset(double offset_s) const;
+
+ private:
+  OrientationTrack(std::vector<double> times_s, std::vector<Eigen::Quaterniond> world_from_camera);
+
+  // Index i with times_s_[i] <= t < times_s_[i + 1]; t, on the samples' clock, inside the span.
+  [[nodiscard]] std::size_t IntervalAt(double t) const;
+  [[nodiscard]] std::optional<Eigen::Quaterniond> WorldFromCamera(double time_s) const;
+
+  std::vector<double> times_s_;
+  std::vector<Eigen::Quaterniond> world_from_camera_;
+  double offset_s_ = 0.0;
+  double intervals_per_s_ = 0.0;  // mean density of samples, to guess the index of a time
+};
+
+}  // namespace rsstab::igf
+
+#endif  // RSSTAB_IGF_ORIENTATION_TRACK_H_
