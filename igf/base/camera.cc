@@ -15,25 +15,55 @@ constexpr double kMinDepth = 1e-9;
 constexpr int kMaxIterations = 30;
 constexpr double kConverged = 1e-12;
 
+using Coefficients = std::array<double, 8>;
+
 // theta_d of the OpenCV fisheye model and its derivative.
 struct FisheyeAngle {
   double value;
   double slope;
 };
-FisheyeAngle DistortAngle(double theta, const std::vector<double>& k) {
+FisheyeAngle DistortAngle(double theta, const Coefficients& k) {
   const double t2 = theta * theta;
-  const double k1 = k[0];
-  const double k2 = k[1];
-  const double k3 = k[2];
-  const double k4 = k[3];
-  return {theta * (1.0 + t2 * (k1 + t2 * (k2 + t2 * (k3 + t2 * k4)))),
-          1.0 + t2 * (3.0 * k1 + t2 * (5.0 * k2 + t2 * (7.0 * k3 + t2 * 9.0 * k4)))};
+  return {theta * (1.0 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3])))),
+          1.0 + t2 * (3.0 * k[0] + t2 * (5.0 * k[1] + t2 * (7.0 * k[2] + t2 * 9.0 * k[3])))};
+}
+
+// Up to which angle the polynomial is believed. One that grows all the way to 90 degrees is
+// believed so far. One that folds before is a calibration extrapolated beyond its data: it is
+// believed until its slope falls below kMinSlopeRatio of the mean scale theta_d / theta (real
+// lenses keep about 0.8: equisolid 0.79 at 90 degrees).
+double BelievedAngle(const Coefficients& k) {
+  constexpr double kRightAngle = std::numbers::pi / 2.0;
+  constexpr int kSteps = 64;
+  constexpr int kBisections = 40;
+  constexpr double kMinSlope = 0.05;
+  constexpr double kMinSlopeRatio = 0.7;
+  bool folds = false;
+  double below = 0.0;  // last step with a good slope before the first bad one
+  bool found = false;
+  for (int i = 1; i <= kSteps; ++i) {
+    const double theta = kRightAngle * i / kSteps;
+    const FisheyeAngle f = DistortAngle(theta, k);
+    folds = folds || !(f.slope > kMinSlope);
+    found = found || !(f.slope * theta > kMinSlopeRatio * f.value);
+    if (!found) {
+      below = theta;
+    }
+  }
+  if (!folds) {
+    return kRightAngle;
+  }
+  double above = below + kRightAngle / kSteps;
+  for (int i = 0; i < kBisections; ++i) {
+    const double middle = 0.5 * (below + above);
+    const FisheyeAngle f = DistortAngle(middle, k);
+    (f.slope * middle > kMinSlopeRatio * f.value ? below : above) = middle;
+  }
+  return below;
 }
 
 // Normalised, undistorted -> normalised, distorted, by the Brown-Conrady model.
-Eigen::Vector2d DistortBrown(const Eigen::Vector2d& p, const std::vector<double>& d) {
-  std::array<double, 8> k{};
-  std::copy(d.begin(), d.end(), k.begin());
+Eigen::Vector2d DistortBrown(const Eigen::Vector2d& p, const Coefficients& k) {
   const double r2 = p.squaredNorm();
   const double radial =
       (1.0 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]))) / (1.0 + r2 * (k[5] + r2 * (k[6] + r2 * k[7])));
@@ -42,7 +72,7 @@ Eigen::Vector2d DistortBrown(const Eigen::Vector2d& p, const std::vector<double>
           p.y() * radial + k[2] * (r2 + 2.0 * p.y() * p.y()) + 2.0 * k[3] * xy};
 }
 
-Eigen::Matrix2d BrownJacobian(const Eigen::Vector2d& p, const std::vector<double>& d) {
+Eigen::Matrix2d BrownJacobian(const Eigen::Vector2d& p, const Coefficients& d) {
   constexpr double kStep = 1e-6;
   const Eigen::Vector2d dx(kStep, 0.0);
   const Eigen::Vector2d dy(0.0, kStep);
@@ -52,27 +82,29 @@ Eigen::Matrix2d BrownJacobian(const Eigen::Vector2d& p, const std::vector<double
   return j;
 }
 
-std::optional<double> UndistortAngle(double theta_d, const std::vector<double>& k) {
-  double theta = theta_d;
+// Inverse of DistortAngle on [0, limit], where it grows. Newton steps, kept inside a bracket.
+double UndistortAngle(double theta_d, double limit, const Coefficients& k) {
+  double low = 0.0;
+  double high = limit;
+  double theta = std::min(theta_d, limit);
   for (int i = 0; i < kMaxIterations; ++i) {
     const FisheyeAngle f = DistortAngle(theta, k);
-    if (f.slope <= 0.0) {
-      return std::nullopt;  // past the fold: two angles share this radius
+    (f.value < theta_d ? low : high) = theta;
+    double next = theta - (f.value - theta_d) / f.slope;
+    if (!(next >= low && next <= high)) {
+      next = 0.5 * (low + high);
     }
-    const double step = (f.value - theta_d) / f.slope;
-    theta -= step;
-    if (theta < 0.0 || theta >= std::numbers::pi) {
-      return std::nullopt;
-    }
+    const double step = next - theta;
+    theta = next;
     if (std::abs(step) < kConverged) {
-      return theta;
+      break;
     }
   }
-  return std::nullopt;
+  return theta;
 }
 
 std::optional<Eigen::Vector2d> UndistortBrown(const Eigen::Vector2d& distorted,
-                                              const std::vector<double>& d) {
+                                              const Coefficients& d) {
   Eigen::Vector2d p = distorted;
   for (int i = 0; i < kMaxIterations; ++i) {
     const Eigen::Matrix2d j = BrownJacobian(p, d);
@@ -143,58 +175,11 @@ Eigen::Matrix3d Camera::K() const {
 }
 
 std::optional<Eigen::Vector2d> Camera::ProjectRay(const Eigen::Vector3d& ray) const {
-  Eigen::Vector2d p;
-  if (model == LensModel::kFisheye) {
-    const double radius = ray.head<2>().norm();
-    const double theta = std::atan2(radius, ray.z());
-    const FisheyeAngle f = DistortAngle(theta, distortion);
-    if (f.slope <= 0.0 || !std::isfinite(f.value)) {
-      return std::nullopt;
-    }
-    p = radius > 0.0 ? Eigen::Vector2d(ray.head<2>() * (f.value / radius))
-                     : Eigen::Vector2d::Zero();
-  } else {
-    if (!(ray.z() > kMinDepth)) {
-      return std::nullopt;
-    }
-    p = ray.hnormalized();
-    if (model == LensModel::kBrown) {
-      if (BrownJacobian(p, distortion).determinant() <= 0.0) {
-        return std::nullopt;
-      }
-      p = DistortBrown(p, distortion);
-    }
-  }
-  return Eigen::Vector2d(fx * p.x() + cx, fy * p.y() + cy);
+  return CameraProjector(*this).ProjectRay(ray);
 }
 
 std::optional<Eigen::Vector3d> Camera::UnprojectPixel(const Eigen::Vector2d& pixel) const {
-  const Eigen::Vector2d p((pixel.x() - cx) / fx, (pixel.y() - cy) / fy);
-  switch (model) {
-    case LensModel::kPinhole:
-      return Eigen::Vector3d(p.x(), p.y(), 1.0);
-    case LensModel::kBrown: {
-      const auto undistorted = UndistortBrown(p, distortion);
-      if (!undistorted) {
-        return std::nullopt;
-      }
-      return Eigen::Vector3d(undistorted->x(), undistorted->y(), 1.0);
-    }
-    case LensModel::kFisheye: {
-      const double radius = p.norm();
-      if (radius < kMinDepth) {
-        return Eigen::Vector3d(p.x(), p.y(), 1.0);
-      }
-      const auto theta = UndistortAngle(radius, distortion);
-      // Rays sideways or behind have no (x, y, 1) form.
-      if (!theta || *theta >= std::numbers::pi / 2.0 - 1e-6) {
-        return std::nullopt;
-      }
-      return Eigen::Vector3d(p.x() * std::tan(*theta) / radius, p.y() * std::tan(*theta) / radius,
-                             1.0);
-    }
-  }
-  return std::nullopt;
+  return CameraProjector(*this).UnprojectPixel(pixel);
 }
 
 Camera Camera::Rescaled(int new_width, int new_height) const {
@@ -208,6 +193,75 @@ Camera Camera::Rescaled(int new_width, int new_height) const {
   camera.cx = (cx + 0.5) * sx - 0.5;
   camera.cy = (cy + 0.5) * sy - 0.5;
   return camera;
+}
+
+CameraProjector::CameraProjector(const Camera& camera)
+    : fx_(camera.fx), fy_(camera.fy), cx_(camera.cx), cy_(camera.cy), model_(camera.model) {
+  std::copy_n(camera.distortion.begin(), std::min(camera.distortion.size(), k_.size()), k_.begin());
+  if (model_ == LensModel::kFisheye) {
+    line_theta_ = BelievedAngle(k_);
+    const FisheyeAngle f = DistortAngle(line_theta_, k_);
+    line_value_ = f.value;
+    line_slope_ = f.slope;
+  }
+}
+
+std::optional<Eigen::Vector2d> CameraProjector::ProjectRay(const Eigen::Vector3d& ray) const {
+  Eigen::Vector2d p;
+  if (model_ == LensModel::kFisheye) {
+    const double radius = ray.head<2>().norm();
+    const double theta = std::atan2(radius, ray.z());
+    const double theta_d = theta < line_theta_ ? DistortAngle(theta, k_).value
+                                               : line_value_ + line_slope_ * (theta - line_theta_);
+    if (!std::isfinite(theta_d)) {
+      return std::nullopt;
+    }
+    p = radius > 0.0 ? Eigen::Vector2d(ray.head<2>() * (theta_d / radius))
+                     : Eigen::Vector2d::Zero();
+  } else {
+    if (!(ray.z() > kMinDepth)) {
+      return std::nullopt;
+    }
+    p = ray.hnormalized();
+    if (model_ == LensModel::kBrown) {
+      if (BrownJacobian(p, k_).determinant() <= 0.0) {
+        return std::nullopt;
+      }
+      p = DistortBrown(p, k_);
+    }
+  }
+  return Eigen::Vector2d(fx_ * p.x() + cx_, fy_ * p.y() + cy_);
+}
+
+std::optional<Eigen::Vector3d> CameraProjector::UnprojectPixel(const Eigen::Vector2d& pixel) const {
+  const Eigen::Vector2d p((pixel.x() - cx_) / fx_, (pixel.y() - cy_) / fy_);
+  switch (model_) {
+    case LensModel::kPinhole:
+      return Eigen::Vector3d(p.x(), p.y(), 1.0);
+    case LensModel::kBrown: {
+      const auto undistorted = UndistortBrown(p, k_);
+      if (!undistorted) {
+        return std::nullopt;
+      }
+      return Eigen::Vector3d(undistorted->x(), undistorted->y(), 1.0);
+    }
+    case LensModel::kFisheye: {
+      const double radius = p.norm();
+      if (radius < kMinDepth) {
+        return Eigen::Vector3d(p.x(), p.y(), 1.0);
+      }
+      const double theta = radius < line_value_
+                               ? UndistortAngle(radius, line_theta_, k_)
+                               : line_theta_ + (radius - line_value_) / line_slope_;
+      // Rays sideways or behind have no (x, y, 1) form.
+      if (!(theta < std::numbers::pi / 2.0 - 1e-6)) {
+        return std::nullopt;
+      }
+      return Eigen::Vector3d(p.x() * std::tan(theta) / radius, p.y() * std::tan(theta) / radius,
+                             1.0);
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace rsstab

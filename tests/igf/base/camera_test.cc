@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace rsstab {
 namespace {
@@ -44,6 +46,53 @@ TEST(Camera, FisheyeBendsTowardsTheCentre) {
   const Camera pinhole = Camera::Pinhole(1000, 750, 600.0);
   const Eigen::Vector3d ray(std::tan(0.7), 0.0, 1.0);
   EXPECT_LT(lens.ProjectRay(ray)->x(), pinhole.ProjectRay(ray)->x());
+}
+
+// GoPro HERO7 4:3 "wide", calibrated at 4000x3000: the polynomial folds at 70 degrees, the corners
+// lie beyond it.
+Camera FoldingFisheye() {
+  Camera camera = Camera::Pinhole(1000, 750, 438.0);
+  camera.model = LensModel::kFisheye;
+  camera.distortion = {0.067292, -0.052752, 0.121414, -0.077412};
+  return camera;
+}
+
+TEST(Camera, FisheyeContinuesStraightWhereItsPolynomialFolds) {
+  const Camera camera = FoldingFisheye();
+  double last_theta = -1.0;
+  // From the centre to a little beyond the corner (90 degrees off the axis are 6% beyond).
+  for (double share = 0.0; share <= 1.05; share += 0.01) {
+    const Eigen::Vector2d pixel(camera.cx * (1.0 + share), camera.cy * (1.0 + share));
+    const auto ray = camera.UnprojectPixel(pixel);
+    ASSERT_TRUE(ray) << share;
+    const double theta = std::atan(ray->head<2>().norm());
+    EXPECT_GT(theta, last_theta) << share;
+    last_theta = theta;
+    const auto back = camera.ProjectRay(*ray);
+    ASSERT_TRUE(back) << share;
+    EXPECT_LT((*back - pixel).norm(), 1e-6) << share;
+  }
+}
+
+TEST(Camera, FisheyeGivesEveryRayItsOwnPixel) {
+  const Camera camera = FoldingFisheye();
+  double last = -1.0;
+  for (double theta = 0.0; theta < 3.0; theta += 0.01) {
+    const auto pixel = camera.ProjectRay({std::sin(theta), 0.0, std::cos(theta)});
+    ASSERT_TRUE(pixel) << theta;
+    EXPECT_GT(pixel->x() - camera.cx, last) << theta;
+    last = pixel->x() - camera.cx;
+  }
+}
+
+// Inside the calibrated part nothing may change: 45 degrees off axis by the published formula.
+TEST(Camera, FisheyeKeepsItsPolynomialBeforeTheFold) {
+  const Camera camera = FoldingFisheye();
+  const double theta = std::numbers::pi / 4.0;
+  const double t2 = theta * theta;
+  const double theta_d = theta * (1.0 + 0.067292 * t2 - 0.052752 * t2 * t2 +
+                                  0.121414 * t2 * t2 * t2 - 0.077412 * t2 * t2 * t2 * t2);
+  EXPECT_NEAR(camera.ProjectRay({1.0, 0.0, 1.0})->x(), camera.cx + 438.0 * theta_d, 1e-9);
 }
 
 TEST(Camera, NothingBehindAPinhole) {
