@@ -16,8 +16,9 @@ constexpr int kMaxSteps = 4;
 
 }  // namespace
 
-Result<OrientationTrack> OrientationTrack::Create(
-    std::vector<double> times_s, std::vector<Eigen::Quaterniond> world_from_camera) {
+Result<OrientationTrack> OrientationTrack::Create(std::vector<double> times_s,
+                                                  std::vector<Eigen::Quaterniond> world_from_camera,
+                                                  std::vector<TimeSpan> gaps) {
   if (times_s.size() != world_from_camera.size() || times_s.size() < 2) {
     return Fail(ErrorCode::kInvalidArgument,
                 "an orientation track needs at least two samples and as many times as "
@@ -37,22 +38,35 @@ Result<OrientationTrack> OrientationTrack::Create(
     }
     world_from_camera[i].coeffs() /= norm;
   }
-  return OrientationTrack(std::move(times_s), std::move(world_from_camera));
+  return OrientationTrack(std::move(times_s), std::move(world_from_camera), std::move(gaps));
 }
 
 OrientationTrack::OrientationTrack(std::vector<double> times_s,
-                                   std::vector<Eigen::Quaterniond> world_from_camera)
+                                   std::vector<Eigen::Quaterniond> world_from_camera,
+                                   std::vector<TimeSpan> gaps)
     : times_s_(std::move(times_s)),
       world_from_camera_(std::move(world_from_camera)),
+      gaps_(std::move(gaps)),
       intervals_per_s_(static_cast<double>(times_s_.size() - 1) /
                        (times_s_.back() - times_s_.front())) {}
 
 bool OrientationTrack::Covers(double from_s, double to_s) const {
-  return std::min(from_s, to_s) >= start_s() && std::max(from_s, to_s) < end_s();
+  return CoversSampleTimes(std::min(from_s, to_s) - offset_s_, std::max(from_s, to_s) - offset_s_);
+}
+
+bool OrientationTrack::CoversSampleTimes(double low, double high) const {
+  // Written so that NaN is outside.
+  if (!(low >= times_s_.front() && high < times_s_.back())) {
+    return false;
+  }
+  // The first gap that ends after `low` is the only one that can overlap from below.
+  const auto gap = std::upper_bound(gaps_.begin(), gaps_.end(), low,
+                                    [](double t, const TimeSpan& g) { return t < g.end_s; });
+  return gap == gaps_.end() || high <= gap->begin_s;
 }
 
 std::optional<Eigen::Quaterniond> OrientationTrack::CameraFromWorld(double time_s) const {
-  const auto world_from_camera = WorldFromCamera(time_s);
+  const auto world_from_camera = WorldFromCamera(time_s - offset_s_);
   if (!world_from_camera) {
     return std::nullopt;
   }
@@ -60,12 +74,13 @@ std::optional<Eigen::Quaterniond> OrientationTrack::CameraFromWorld(double time_
 }
 
 std::optional<Eigen::Vector3d> OrientationTrack::MeanRate(double from_s, double to_s) const {
-  const auto from = WorldFromCamera(from_s);
-  const auto to = WorldFromCamera(to_s);
-  if (!from || !to || !(to_s > from_s)) {
+  const double from_t = from_s - offset_s_;
+  const double to_t = to_s - offset_s_;
+  if (!(to_s > from_s) || !CoversSampleTimes(from_t, to_t)) {
     return std::nullopt;
   }
-  return LogSo3(Eigen::Quaterniond(from->conjugate() * *to)) / (to_s - from_s);
+  return LogSo3(Eigen::Quaterniond(WorldFromCamera(from_t)->conjugate() * *WorldFromCamera(to_t))) /
+         (to_s - from_s);
 }
 
 OrientationTrack OrientationTrack::WithOffset(double offset_s) const {
@@ -74,10 +89,8 @@ OrientationTrack OrientationTrack::WithOffset(double offset_s) const {
   return shifted;
 }
 
-std::optional<Eigen::Quaterniond> OrientationTrack::WorldFromCamera(double time_s) const {
-  const double t = time_s - offset_s_;
-  // Written so that NaN is outside.
-  if (!(t >= times_s_.front() && t < times_s_.back())) {
+std::optional<Eigen::Quaterniond> OrientationTrack::WorldFromCamera(double t) const {
+  if (!CoversSampleTimes(t, t)) {
     return std::nullopt;
   }
   const std::size_t i = IntervalAt(t);

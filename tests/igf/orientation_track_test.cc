@@ -78,6 +78,20 @@ TEST(OrientationTrack, OffsetMovesTheSamplesLater) {
   EXPECT_TRUE(video.CameraFromWorld(2.005));
 }
 
+TEST(OrientationTrack, KnowsNothingInsideAGap) {
+  std::vector<Eigen::Quaterniond> still(5, Eigen::Quaterniond::Identity());
+  const OrientationTrack track =
+      OrientationTrack::Create({0.0, 1.0, 2.0, 3.0, 4.0}, still, {{1.0, 2.0}, {3.0, 3.5}})
+          ->WithOffset(10.0);
+  EXPECT_TRUE(track.CameraFromWorld(11.0));
+  EXPECT_FALSE(track.CameraFromWorld(11.5));
+  EXPECT_TRUE(track.CameraFromWorld(12.0));
+  EXPECT_FALSE(track.CameraFromWorld(13.2));
+  EXPECT_TRUE(track.Covers(12.0, 13.0));
+  EXPECT_FALSE(track.Covers(10.5, 12.5));
+  EXPECT_FALSE(track.MeanRate(10.5, 12.5));
+}
+
 TEST(OrientationTrack, MeanRateIsTheBodyRate) {
   const Eigen::Vector3d rate(0.3, -0.7, 0.2);
   const OrientationTrack track = ConstantRate(rate, {0.0, 0.1, 0.2, 0.3, 0.4});
