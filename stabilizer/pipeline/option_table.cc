@@ -47,12 +47,12 @@ std::string RealRange::Text() const {
   const bool from = std::isfinite(min);
   const bool to = std::isfinite(max);
   if (from && to) {
-    return fmt::format("from {} to {}", FormatReal(min), FormatReal(max));
+    return fmt::format("{} to {}", FormatReal(min), FormatReal(max));
   }
   if (from) {
-    return fmt::format("of at least {}", FormatReal(min));
+    return FormatReal(min) + " or more";
   }
-  return to ? fmt::format("of at most {}", FormatReal(max)) : std::string();
+  return to ? FormatReal(max) + " or less" : std::string();
 }
 
 tl::unexpected<Error> BadOption(const std::string& name, const std::string& text,

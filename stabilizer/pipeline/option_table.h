@@ -22,6 +22,7 @@ enum class OptionStage { kAnalysis, kRender, kBoth };
 template <typename Options>
 struct OptionSpec {
   std::string name;        // without dashes: "gyro-offset"
+  char short_name = '\0';  // 'o' for -o; none by default
   std::string value_name;  // "S", "FILE", "auto|gyro|off"; empty for a switch
   std::string range;       // "0 to 10"; empty when value_name says it all
   std::string help;        // one sentence or two; neither default nor range (they are added)
@@ -53,11 +54,11 @@ struct RealRange {
   double max = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] bool Contains(double value) const { return value >= min && value <= max; }
-  // "0 to 10", "at least 1", or empty.
+  // "0 to 10", "1 or more", or empty.
   [[nodiscard]] std::string Text() const;
 };
 
-// "--name: 'text' is not a number from 0 to 10"
+// "--name: 'text' is not a number in the range 0 to 10"
 [[nodiscard]] tl::unexpected<Error> BadOption(const std::string& name, const std::string& text,
                                               const std::string& rule);
 
@@ -74,7 +75,7 @@ OptionSpec<Options> RealOption(std::string name, std::string value_name, Field O
   spec.set = [name, field, range, scale](Options& options, const std::string& text) -> Status {
     const std::optional<double> value = ParseReal(text);
     if (!value || !range.Contains(*value)) {
-      return BadOption(name, text, "a number " + range.Text());
+      return BadOption(name, text, "a number in the range " + range.Text());
     }
     options.*field = *value * scale;
     return {};
@@ -100,7 +101,7 @@ OptionSpec<Options> IntegerOption(std::string name, std::string value_name, Fiel
   spec.set = [name, field, min, max, range](Options& options, const std::string& text) -> Status {
     const std::optional<std::int64_t> value = ParseInteger(text);
     if (!value || *value < min || *value > max) {
-      return BadOption(name, text, "a whole number " + range.Text());
+      return BadOption(name, text, "a whole number in the range " + range.Text());
     }
     options.*field = static_cast<Field>(*value);
     return {};

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/cli_options.h"
+
+#include <algorithm>
+
+#include "cli/command_apps.h"
+#include "cli/help_page.h"
+#include "cli/manual_page.h"
+#include "cli/shell_completion.h"
+
+namespace rsstab::cli {
+namespace {
+
+EarlyExit UsageError(const std::string& program, const std::string& message) {
+  return {kExitUsage, "", "rs-stabilize: " + message + "\nSee " + program + " --help.\n"};
+}
+
+}  // namespace
+
+std::variant<Invocation, EarlyExit> ParseCommandLine(const std::vector<std::string>& arguments) {
+  // For the build, which installs what these print.
+  if (arguments.size() == 1 && arguments[0] == "--print-manual") {
+    return EarlyExit{kExitDone, ManualPage(), ""};
+  }
+  if (arguments.size() == 1 && arguments[0] == "--print-bash-completion") {
+    return EarlyExit{kExitDone, BashCompletion(), ""};
+  }
+
+  CommandId id = CommandId::kStabilize;
+  std::vector<std::string> rest = arguments;
+  for (const CommandText& text : CommandTexts()) {
+    if (!rest.empty() && !text.name.empty() && rest.front() == text.name) {
+      id = text.id;
+      rest.erase(rest.begin());
+      break;
+    }
+  }
+
+  Invocation invocation;
+  const auto app = MakeCommandApp(id, invocation);
+  std::reverse(rest.begin(), rest.end());  // CLI11 takes them from the back
+  try {
+    app->parse(rest);
+  } catch (const CLI::CallForHelp&) {
+    return EarlyExit{kExitDone, HelpPage(id), ""};
+  } catch (const CLI::CallForVersion& version) {
+    return EarlyExit{kExitDone, std::string(version.what()) + "\n", ""};
+  } catch (const CLI::ParseError& error) {
+    return UsageError(app->get_name(), error.what());
+  }
+  if (const Status status = pipeline::Validate(invocation.stabilize); !status) {
+    return UsageError(app->get_name(), status.error().message);
+  }
+  return invocation;
+}
+
+}  // namespace rsstab::cli

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/cli_options.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "cli/command_apps.h"
+
+namespace rsstab::cli {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+Invocation Parsed(const std::vector<std::string>& arguments) {
+  const auto result = ParseCommandLine(arguments);
+  if (const auto* exit = std::get_if<EarlyExit>(&result)) {
+    ADD_FAILURE() << exit->output << exit->error;
+    return {};
+  }
+  return std::get<Invocation>(result);
+}
+
+EarlyExit Refused(const std::vector<std::string>& arguments) {
+  const auto result = ParseCommandLine(arguments);
+  if (const auto* exit = std::get_if<EarlyExit>(&result)) {
+    return *exit;
+  }
+  ADD_FAILURE() << "accepted";
+  return {};
+}
+
+TEST(CliOptions, InputAloneIsTheMainJob) {
+  const Invocation invocation = Parsed({"clip.mp4"});
+  EXPECT_EQ(invocation.command, CommandId::kStabilize);
+  EXPECT_EQ(invocation.input, "clip.mp4");
+  EXPECT_EQ(invocation.encode.output, "");
+}
+
+TEST(CliOptions, EveryNameInTheManualReachesItsField) {
+  const Invocation invocation = Parsed({"--rs",
+                                        "gyro",
+                                        "--gyro",
+                                        "g.csv",
+                                        "--gyro-offset",
+                                        "-1.5",
+                                        "--readout",
+                                        "-16",
+                                        "--focal",
+                                        "900",
+                                        "--camera",
+                                        "c.json",
+                                        "--threads",
+                                        "2",
+                                        "--progress",
+                                        "json",
+                                        "--seed",
+                                        "7",
+                                        "--log-level",
+                                        "debug",
+                                        "--smoothness",
+                                        "0.5",
+                                        "--crop=0.9",
+                                        "--zoom",
+                                        "1.2",
+                                        "--mesh",
+                                        "8x4",
+                                        "--tripod",
+                                        "--interpolation",
+                                        "lanczos",
+                                        "--codec",
+                                        "libx265",
+                                        "--crf",
+                                        "20",
+                                        "--preset",
+                                        "fast",
+                                        "--pix-fmt",
+                                        "yuv420p10le",
+                                        "--encoder-option",
+                                        "x265-params=a=1:b=2",
+                                        "--encoder-option",
+                                        "tune=grain",
+                                        "--overwrite",
+                                        "in.mov",
+                                        "-o",
+                                        "-"});
+  EXPECT_EQ(invocation.input, "in.mov");
+  EXPECT_EQ(invocation.stabilize.rs, pipeline::RsChoice::kGyro);
+  EXPECT_EQ(invocation.stabilize.gyro_file, "g.csv");
+  EXPECT_EQ(invocation.stabilize.gyro_offset_s, -1.5);
+  EXPECT_DOUBLE_EQ(*invocation.stabilize.readout_s, -0.016);
+  EXPECT_EQ(invocation.stabilize.focal_px, 900.0);
+  EXPECT_EQ(invocation.stabilize.camera_file, "c.json");
+  EXPECT_EQ(invocation.stabilize.num_threads, 2);
+  EXPECT_EQ(invocation.run.progress, ProgressStyle::kJson);
+  EXPECT_EQ(invocation.stabilize.seed, 7U);
+  EXPECT_EQ(invocation.run.log_level, LogLevel::kDebug);
+  EXPECT_EQ(invocation.stabilize.smoothness_s, 0.5);
+  EXPECT_EQ(invocation.stabilize.min_crop_ratio, 0.9);
+  EXPECT_EQ(invocation.stabilize.fixed_zoom, 1.2);
+  EXPECT_EQ(invocation.stabilize.mesh_rows, 4);
+  EXPECT_TRUE(invocation.stabilize.tripod);
+  EXPECT_EQ(invocation.stabilize.interpolation, stabilizer::Interpolation::kLanczos);
+  EXPECT_EQ(invocation.encode.codec, "libx265");
+  EXPECT_EQ(invocation.encode.crf, 20.0);
+  EXPECT_EQ(invocation.encode.preset, "fast");
+  EXPECT_EQ(invocation.encode.pix_fmt, "yuv420p10le");
+  ASSERT_EQ(invocation.encode.encoder_options.size(), 2U);
+  EXPECT_EQ(invocation.encode.encoder_options[0].second, "a=1:b=2");
+  EXPECT_TRUE(invocation.encode.overwrite);
+  EXPECT_EQ(invocation.encode.output, "-");
+}
+
+TEST(CliOptions, CommandsAreTheFirstWordOnly) {
+  EXPECT_EQ(Parsed({"analyze", "clip.mp4"}).command, CommandId::kAnalyze);
+  EXPECT_EQ(Parsed({"analyze", "clip.mp4", "-o", "a"}).analysis_file, "a");
+  EXPECT_EQ(Parsed({"render", "clip.mp4", "a", "-o", "b"}).analysis_file, "a");
+  EXPECT_EQ(Parsed({"info", "--json", "clip.mp4"}).command, CommandId::kInfo);
+  const Invocation clip = Parsed({"./analyze"});
+  EXPECT_EQ(clip.command, CommandId::kStabilize);
+  EXPECT_EQ(clip.input, "./analyze");
+  EXPECT_EQ(Parsed({"clip.mp4", "-o", "render"}).encode.output, "render");
+  EXPECT_EQ(Parsed({"--", "-odd.mp4"}).input, "-odd.mp4");
+}
+
+TEST(CliOptions, WrongUsageIsExitCodeTwoAndOneSentence) {
+  const std::vector<std::vector<std::string>> wrong = {{},
+                                                       {"--no-such-option", "a.mp4"},
+                                                       {"a.mp4", "b.mp4"},
+                                                       {"a.mp4", "--crop", "2"},
+                                                       {"a.mp4", "--crop"},
+                                                       {"a.mp4", "--mesh", "16"},
+                                                       {"a.mp4", "--smoothness", "nan"},
+                                                       {"a.mp4", "--encoder-option", "noequals"},
+                                                       {"a.mp4", "--rs", "off", "--gyro", "g.csv"},
+                                                       {"render"},
+                                                       {"analyze", "a.mp4", "--crf", "18"},
+                                                       {"render", "a.mp4", "--smoothness", "1"}};
+  for (const auto& arguments : wrong) {
+    const EarlyExit exit = Refused(arguments);
+    EXPECT_EQ(exit.exit_code, kExitUsage);
+    EXPECT_EQ(exit.output, "");
+    EXPECT_THAT(exit.error, StartsWith("rs-stabilize: "));
+    EXPECT_THAT(exit.error, HasSubstr("--help"));
+  }
+}
+
+TEST(CliOptions, HelpFitsATerminalAndNamesEveryOption) {
+  for (const CommandText& text : CommandTexts()) {
+    std::vector<std::string> arguments = {"--help"};
+    if (!text.name.empty()) {
+      arguments.insert(arguments.begin(), text.name);
+    }
+    const EarlyExit exit = Refused(arguments);
+    EXPECT_EQ(exit.exit_code, kExitDone);
+    std::istringstream lines(exit.output);
+    for (std::string line; std::getline(lines, line);) {
+      EXPECT_LE(line.size(), 80U) << line;
+    }
+    Invocation unused;
+    const auto app = MakeCommandApp(text.id, unused);
+    for (const CLI::Option* option : app->get_options()) {
+      EXPECT_THAT(exit.output, HasSubstr(OptionFlags(*option)));
+    }
+  }
+}
+
+TEST(CliOptions, ManualAndCompletionKnowTheOptions) {
+  const std::string manual = Refused({"--print-manual"}).output;
+  const std::string completion = Refused({"--print-bash-completion"}).output;
+  EXPECT_THAT(manual, StartsWith(".TH RS\\-STABILIZE 1"));
+  EXPECT_THAT(manual, HasSubstr("\\-\\-gyro\\-offset S"));
+  EXPECT_THAT(completion, HasSubstr("--gyro-offset"));
+  EXPECT_THAT(completion, HasSubstr("--rs) COMPREPLY=($(compgen -W \"auto gyro off\""));
+}
+
+TEST(CliOptions, VersionIsOneLine) {
+  const EarlyExit exit = Refused({"--version"});
+  EXPECT_EQ(exit.exit_code, kExitDone);
+  EXPECT_THAT(exit.output, ::testing::MatchesRegex("rs-stabilize [0-9.]+\n"));
+}
+
+}  // namespace
+}  // namespace rsstab::cli
