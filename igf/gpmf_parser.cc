@@ -248,6 +248,9 @@ Result<GyroRecording> ParseGpmf(std::span<const GpmfPayload> payloads,
                                 const GyroParseOptions& options) {
   GpmfStreamCollector streams;
   for (std::size_t i = 0; i < payloads.size(); ++i) {
+    if (!std::isfinite(payloads[i].start_s)) {
+      return Fail(ErrorCode::kCorruptData, "GPMF payload {} has no finite start time", i);
+    }
     streams.Add(i, payloads[i].bytes);
   }
   const GpmfDevice* device = ChooseDevice(streams.devices());

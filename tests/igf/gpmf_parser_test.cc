@@ -424,6 +424,8 @@ TEST(GpmfParser, RefusesPayloadsWithoutUsableTime) {
   Track single;
   single.Add(payload, 0.0, 0.0);
   EXPECT_THAT(ParseGpmf(single.payloads).error().message, HasSubstr("duration"));
+  single.payloads[0].start_s = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(ParseGpmf(single.payloads).error().message, HasSubstr("payload 0"));
   EXPECT_THAT(ParseGpmf({}).error().message, HasSubstr("no gyro"));
 }
 
