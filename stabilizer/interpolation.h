@@ -4,8 +4,12 @@
 
 namespace rsstab::stabilizer {
 
-// How a sample between four pixels is made. Support in pixels: 2x2, 4x4, 8x8.
-enum class Interpolation { kBilinear, kBicubic, kLanczos };
+// How a sample between pixels is made.
+enum class Interpolation {
+  kBilinear,  // from 2x2 pixels
+  kBicubic,   // from 4x4: Keys 1981 with a = -1/2, exact for quadratics
+  kLanczos,   // from 6x6: three lobes, normalised
+};
 
 }  // namespace rsstab::stabilizer
 

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stabilizer/plane_warper.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace rsstab::stabilizer {
+namespace {
+
+constexpr int kRowsPerBlock = 16;
+
+// Positions farther outside than this many pixels are all alike (black), so clamping them there
+// keeps the fixed-point arithmetic in range.
+constexpr float kOutsideMarginPx = 8.0F;
+
+// One axis of a plane's samples among the map's vertices.
+struct PlaneAxis {
+  int size;        // samples
+  double step;     // luma pixels from one sample to the next
+  double offset;   // luma pixel of sample 0
+  double spacing;  // luma pixels from one vertex to the next; 0 when there is one pixel only
+  int cells;       // vertices less one
+
+  PlaneAxis(int plane_size, int chroma_shift, double chroma_offset, int map_size, int vertices)
+      : size(plane_size),
+        step(1 << chroma_shift),
+        offset(chroma_offset),
+        spacing(static_cast<double>(map_size - 1) / (vertices - 1)),
+        cells(vertices - 1) {}
+
+  // Sample -> place among the vertices, where vertex v is at v.
+  [[nodiscard]] double GridPosition(int sample) const {
+    return spacing > 0.0 ? (sample * step + offset) / spacing : 0.0;
+  }
+  // The cell of a sample; the outer cells reach beyond the grid.
+  [[nodiscard]] int CellOf(int sample) const {
+    return std::min(static_cast<int>(GridPosition(sample)), cells - 1);
+  }
+  // Luma pixel -> 1 / kPhases of a sample, as scale and offset.
+  [[nodiscard]] float PhasesPerPixel() const { return static_cast<float>(kPhases / step); }
+  [[nodiscard]] float PhaseOfPixelZero() const {
+    return static_cast<float>(-offset * kPhases / step);
+  }
+};
+
+// A run of samples whose positions follow one straight line.
+struct Segment {
+  int begin;
+  int end;
+  float grid_begin;  // place of `begin` in its cell, 0..1 on the grid
+  float grid_step;   // the same from one sample to the next
+};
+
+// Start, growth per sample, and bounds of a coordinate -> rounded fixed point. NaN comes out as the
+// lower bound. The compiler turns this into vector code.
+void FillLine(float start, float step, float low, float high, std::int32_t* out, int count) {
+  // Truncation rounds down once the number is positive.
+  const float lift = kOutsideMarginPx * kPhases + 0.5F;
+  constexpr auto kLift = static_cast<std::int32_t>(kOutsideMarginPx) * kPhases;
+  for (int i = 0; i < count; ++i) {
+    const float position = start + step * static_cast<float>(i);
+    const float above = position > low ? position : low;
+    const float inside = above < high ? above : high;
+    out[i] = static_cast<std::int32_t>(inside + lift) - kLift;
+  }
+}
+
+// Source positions of the planes of one geometry (all full-size planes, or all chroma planes).
+class PositionSampler {
+ public:
+  PositionSampler(const BackwardMap& map, const PlaneAxis& x, const PlaneAxis& y)
+      : map_(map), x_(x), y_(y) {
+    int begin = 0;
+    for (int cell = 0; cell < x.cells; ++cell) {
+      int end = begin;
+      while (end < x.size && x.CellOf(end) == cell) {
+        ++end;
+      }
+      segments_.push_back({begin, end, static_cast<float>(x.GridPosition(begin) - cell),
+                           static_cast<float>(x.GridPosition(1) - x.GridPosition(0))});
+      begin = end;
+    }
+  }
+
+  // Positions of a row of samples in 1 / kPhases of a sample, clamped to a little outside the
+  // plane.
+  void Row(int row, std::int32_t* out_x, std::int32_t* out_y) const {
+    const int cell_y = y_.CellOf(row);
+    const auto fraction = static_cast<float>(y_.GridPosition(row) - cell_y);
+    const auto between_rows = [&](int column) -> Eigen::Vector2f {
+      const Eigen::Vector2f& top = map_.At(column, cell_y);
+      const Eigen::Vector2f luma = top + fraction * (map_.At(column, cell_y + 1) - top);
+      return {luma.x() * x_.PhasesPerPixel() + x_.PhaseOfPixelZero(),
+              luma.y() * y_.PhasesPerPixel() + y_.PhaseOfPixelZero()};
+    };
+    const float low = -kOutsideMarginPx * kPhases;
+    const float high_x = (static_cast<float>(x_.size) + kOutsideMarginPx) * kPhases;
+    const float high_y = (static_cast<float>(y_.size) + kOutsideMarginPx) * kPhases;
+    Eigen::Vector2f left = between_rows(0);
+    for (std::size_t cell = 0; cell < segments_.size(); ++cell) {
+      const Segment& segment = segments_[cell];
+      const Eigen::Vector2f right = between_rows(static_cast<int>(cell) + 1);
+      const Eigen::Vector2f across = right - left;
+      const Eigen::Vector2f start = left + segment.grid_begin * across;
+      const Eigen::Vector2f step = segment.grid_step * across;
+      const int count = segment.end - segment.begin;
+      FillLine(start.x(), step.x(), low, high_x, out_x + segment.begin, count);
+      FillLine(start.y(), step.y(), low, high_y, out_y + segment.begin, count);
+      left = right;
+    }
+  }
+
+ private:
+  const BackwardMap& map_;
+  PlaneAxis x_;
+  PlaneAxis y_;
+  std::vector<Segment> segments_;  // one per cell, left to right
+};
+
+// Every entry `times` times, in place: pixels -> interleaved samples. `values` holds count * times.
+void RepeatEach(std::vector<std::int32_t>& values, int count, int times) {
+  if (times == 1) {
+    return;
+  }
+  for (int i = count - 1; i >= 0; --i) {
+    const std::int32_t value = values[static_cast<std::size_t>(i)];
+    std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(i) * times, times, value);
+  }
+}
+
+// Planes that have the same source positions, sample by sample.
+struct PlaneGroup {
+  bool chroma;
+  int channels;
+  std::vector<std::size_t> planes;
+};
+
+std::vector<PlaneGroup> GroupPlanes(const PixelLayout& layout) {
+  std::vector<PlaneGroup> groups;
+  for (int p = 0; p < layout.num_planes; ++p) {
+    const auto plane = static_cast<std::size_t>(p);
+    const bool chroma = layout.IsChroma(p);
+    const int channels = layout.channels[plane];
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const PlaneGroup& g) {
+      return g.chroma == chroma && g.channels == channels;
+    });
+    if (group == groups.end()) {
+      group = groups.insert(group, PlaneGroup{chroma, channels, {}});
+    }
+    group->planes.push_back(plane);
+  }
+  return groups;
+}
+
+Status CheckArguments(const FrameView& source, const BackwardMap& map, const Frame& destination) {
+  if (source.width != destination.width || source.height != destination.height ||
+      source.width != map.width() || source.height != map.height() || source.width < 1 ||
+      source.height < 1) {
+    return Fail(ErrorCode::kInvalidArgument,
+                "a picture of {}x{} cannot be warped by a map of {}x{} into one of {}x{}: the "
+                "sizes must be equal",
+                source.width, source.height, map.width(), map.height(), destination.width,
+                destination.height);
+  }
+  const PixelLayout& layout = source.layout;
+  if (!(layout == destination.layout)) {
+    return Fail(ErrorCode::kInvalidArgument,
+                "a picture cannot be warped into one of another pixel layout");
+  }
+  for (int p = 0; p < layout.num_planes; ++p) {
+    const auto plane = static_cast<std::size_t>(p);
+    if (source.planes[plane].data == nullptr || destination.planes[plane].data == nullptr) {
+      return Fail(ErrorCode::kInvalidArgument, "plane {} of a picture to be warped is missing", p);
+    }
+    if (layout.channels[plane] < 1 || layout.channels[plane] > kMaxChannels) {
+      return Fail(ErrorCode::kInvalidArgument, "a plane of {} channels cannot be warped",
+                  layout.channels[plane]);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+PlaneWarper::PlaneWarper(KernelSet kernels)
+    : kernels_(kernels),
+      filters_{FilterBank(Interpolation::kBilinear), FilterBank(Interpolation::kBicubic),
+               FilterBank(Interpolation::kLanczos)} {}
+
+Status PlaneWarper::Warp(const FrameView& source, const BackwardMap& map,
+                         Interpolation interpolation, Frame& destination,
+                         WorkerPool& workers) const {
+  if (Status status = CheckArguments(source, map, destination); !status) {
+    return status;
+  }
+  const PixelLayout& layout = source.layout;
+  const FilterBank& filter = filters_[static_cast<std::size_t>(interpolation)];
+  for (const PlaneGroup& group : GroupPlanes(layout)) {
+    const int any_plane = static_cast<int>(group.planes.front());
+    const int width = layout.PlaneWidth(any_plane, source.width);
+    const int height = layout.PlaneHeight(any_plane, source.height);
+    const PositionSampler sampler(
+        map,
+        PlaneAxis(width, group.chroma ? layout.chroma_shift_x : 0,
+                  group.chroma ? layout.chroma_offset_x : 0.0, map.width(), map.columns()),
+        PlaneAxis(height, group.chroma ? layout.chroma_shift_y : 0,
+                  group.chroma ? layout.chroma_offset_y : 0.0, map.height(), map.rows()));
+
+    workers.ForBlocks(height, kRowsPerBlock, [&](int begin, int end) {
+      std::vector<std::int32_t> source_x(static_cast<std::size_t>(width * group.channels));
+      std::vector<std::int32_t> source_y(source_x.size());
+      for (int y = begin; y < end; ++y) {
+        sampler.Row(y, source_x.data(), source_y.data());
+        RepeatEach(source_x, width, group.channels);
+        RepeatEach(source_y, width, group.channels);
+        for (const std::size_t plane : group.planes) {
+          const PlaneView& from = source.planes[plane];
+          const MutablePlaneView& to = destination.planes[plane];
+          ResampleRow row;
+          row.source = from.data;
+          row.source_stride = from.stride;
+          row.source_width = width;
+          row.source_height = height;
+          row.channels = group.channels;
+          row.bit_depth = layout.bit_depth;
+          for (int c = 0; c < group.channels; ++c) {
+            row.black[static_cast<std::size_t>(c)] = layout.BlackLevel(static_cast<int>(plane), c);
+          }
+          row.source_x = source_x;
+          row.source_y = source_y;
+          row.output = to.data + y * to.stride;
+          Resample(row, filter, kernels_);
+        }
+      }
+    });
+  }
+  return {};
+}
+
+}  // namespace rsstab::stabilizer
