@@ -1,0 +1,66 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Builds the project with warnings as errors and runs the whole test suite, then the suites that
+# handle foreign bytes and raw pixels once more under AddressSanitizer and
+# UndefinedBehaviorSanitizer. The last line counts the results.
+set -uo pipefail
+cd "$(dirname "$0")/.."
+source cmake/debian_build.sh
+
+passed=0
+failed=0
+skipped=0
+
+# finish: the closing line and the exit code, whatever happened before.
+finish() {
+  local line="$passed passed, $failed failed"
+  if [[ $skipped -gt 0 ]]; then
+    line+=", $skipped skipped"
+  fi
+  echo "$line"
+  [[ $failed -eq 0 && $passed -gt 0 ]]
+  exit
+}
+
+# step NAME COMMAND...: a step that fails counts as one failed test and ends the run.
+step() {
+  echo "== $1"
+  shift
+  if ! "$@"; then
+    failed=$((failed + 1))
+    finish
+  fi
+}
+
+# count_of ATTRIBUTE FILE: a figure of ctest's own summary.
+count_of() {
+  sed -n "/<testsuite/,/>/ s/.*[[:space:]]$1=\"\([0-9]*\)\".*/\1/p" "$2" | head -n 1
+}
+
+# run_tests PRESET: all tests of that build; adds to the counts.
+run_tests() {
+  echo "== tests ($1)"
+  local report="$PWD/build/$1/ctest.xml"
+  rm -f "$report"
+  ctest --test-dir "build/$1" --parallel 2 --output-on-failure --no-tests=error \
+    --output-junit "$report" </dev/null
+  if [[ ! -s $report ]]; then
+    failed=$((failed + 1))
+    return
+  fi
+  local total failures left_out
+  total=$(count_of tests "$report")
+  failures=$(count_of failures "$report")
+  left_out=$(($(count_of skipped "$report") + $(count_of disabled "$report")))
+  passed=$((passed + total - failures - left_out))
+  failed=$((failed + failures))
+  skipped=$((skipped + left_out))
+}
+
+step "packages" install_missing "${rsstab_build_packages[@]}" "${rsstab_check_packages[@]}"
+step "build (release, warnings are errors)" build_preset release all -DRSSTAB_TEST_FILTER=
+run_tests release
+step "build (address and undefined-behaviour sanitizers)" build_preset sanitize all \
+  "-DRSSTAB_TEST_FILTER=^(igf|cli|robustness)/|^stabilizer/(plane_warper|backward_map|analysis_file)"
+run_tests sanitize
+finish
