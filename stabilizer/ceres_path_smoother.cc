@@ -1,0 +1,410 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <memory>
+#include <numbers>
+
+#include "igf/base/rotation.h"
+#include "stabilizer/path_residuals.h"
+#include "stabilizer/path_smoother.h"
+#include "stabilizer/spatial_modes.h"
+
+namespace rsstab::stabilizer {
+namespace {
+
+// The smoother passes |P| = |C| / (1 + (w/w2)^4 + (w/w3)^6) of a motion of angular frequency w;
+// w2 and w3 are these shares of 2 pi / smoothness_s.
+constexpr double kAccelerationCutoff = 0.40;
+constexpr double kJerkCutoff = 0.40;
+// A fast pan is meant: smoothing relaxes by exp(-(speed / kPanSpeed)^2), the Gaussian in path
+// difference of Liu et al. 2013, eq. 2. Widths per second, of the motion averaged over kPanWindowS.
+constexpr double kPanSpeed = 0.9;
+constexpr double kPanWindowS = 0.35;
+constexpr double kMinPanWeight = 0.02;
+// How unwillingly the update uses what a turn cannot tell, px per unit of theta (see
+// path_residuals.h): shift, zoom, stretch.
+constexpr double kShiftReluctance = 1.5 * kReferenceWidthPx;
+constexpr double kZoomReluctance = 1.0 * kReferenceWidthPx;
+constexpr double kStretchReluctance = 10.0 * kReferenceWidthPx;
+// The same when a sensor knows the turn: the tracks' noise must not leak into the picture's shape.
+constexpr double kKnownRotationFactor = 20.0;
+constexpr double kCropWeight = 30.0;
+constexpr double kTripodWeight = 300.0;
+// Local paths: highest mode, pull to the camera's own local path, neighbour term.
+constexpr int kMaxModeOrder = 5;
+constexpr double kLocalDataWeight = 2.0;
+constexpr double kNeighbourWeight = 4.0;
+constexpr double kMaxLocalUpdate = 8.0 / kReferenceWidthPx;
+
+constexpr int kMaxIterations = 12;
+constexpr std::size_t kHistory = 3;  // decided frames that the next window leans on
+
+using Theta = UpdateParameters;
+
+// B(theta) as a matrix; see path_residuals.h.
+Eigen::Matrix3d UpdateHomography(const Theta& theta, double focal_ratio) {
+  const Eigen::Vector3d k(focal_ratio, focal_ratio, 1.0);
+  const Eigen::Matrix3d turn =
+      ExpSo3(Eigen::Vector3d(theta[0], theta[1], theta[2])).toRotationMatrix();
+  const double zoom = std::exp(theta[5]);
+  Eigen::Matrix3d affine;
+  affine << zoom * (1.0 + theta[6]), theta[7], theta[3],  //
+      theta[7], zoom * (1.0 - theta[6]), theta[4],        //
+      0.0, 0.0, 1.0;
+  const Eigen::Matrix3d update = k.asDiagonal() * turn * k.cwiseInverse().asDiagonal() * affine;
+  return update / update(2, 2);
+}
+
+struct Node {
+  FrameMotion motion;
+  double pan_weight = 1.0;
+  Theta theta{};
+  std::vector<Eigen::Vector2d> local_path;    // C of every spatial mode, chained motion
+  std::vector<Eigen::Vector2d> local_smooth;  // P of every spatial mode
+};
+
+class CeresPathSmoother final : public PathSmoother {
+ public:
+  explicit CeresPathSmoother(const PathSmootherOptions& options)
+      : options_(options),
+        points_(MakePathPoints(options.aspect)),
+        modes_(options.mesh_columns, options.mesh_rows, kMaxModeOrder) {
+    const double frames = options.smoothness_s * options.frames_per_second;
+    look_ahead_ = static_cast<std::size_t>(std::clamp(std::lround(2.0 * frames), 30L, 240L));
+    commit_ = std::max<std::size_t>(look_ahead_ / 2, 15);
+    const double radians_per_frame = 2.0 * std::numbers::pi / std::max(frames, 1.0);
+    // Square roots of the weights, since residuals are squared.
+    acceleration_weight_ = std::pow(kAccelerationCutoff * radians_per_frame, -2.0);
+    jerk_weight_ = std::pow(kJerkCutoff * radians_per_frame, -3.0);
+  }
+
+  Status Push(const FrameMotion& motion) override {
+    if (motion.path_begins && decided_ < nodes_.size()) {
+      if (Status ok = DecideAll(); !ok) {
+        return ok;
+      }
+    }
+    if (motion.path_begins) {
+      nodes_.clear();
+      decided_ = 0;
+    }
+    Node node;
+    node.motion = motion;
+    node.motion.path_begins = nodes_.empty();
+    AppendLocalPath(node);
+    nodes_.push_back(std::move(node));
+    if (nodes_.size() - decided_ >= commit_ + look_ahead_) {
+      return Decide(commit_);
+    }
+    return {};
+  }
+
+  Status Finish() override { return DecideAll(); }
+
+  std::vector<PathUpdate> TakeReady() override { return std::exchange(ready_, {}); }
+
+ private:
+  void AppendLocalPath(Node& node) const {
+    std::vector<Eigen::Vector2d> step(modes_.count(), Eigen::Vector2d::Zero());
+    if (!node.motion.local.empty() && !nodes_.empty()) {
+      step = modes_.Analyze(node.motion.local);
+    }
+    node.local_path = std::move(step);
+    if (!nodes_.empty()) {
+      for (std::size_t k = 0; k < modes_.count(); ++k) {
+        node.local_path[k] += nodes_.back().local_path[k];
+      }
+    }
+    node.local_smooth = node.local_path;
+  }
+
+  Status DecideAll() {
+    while (decided_ < nodes_.size()) {
+      const std::size_t open = nodes_.size() - decided_;
+      // The last window is solved in one piece, so that no short tail is decided without a future.
+      if (Status ok = Decide(open <= commit_ + look_ahead_ ? open : commit_); !ok) {
+        return ok;
+      }
+    }
+    return {};
+  }
+
+  // Solves over all frames at hand and decides the next `count`.
+  Status Decide(std::size_t count) {
+    if (options_.smoothness_s > 0.0 || options_.tripod) {
+      UpdatePanWeights();
+      if (Status ok = SolveGlobal(); !ok) {
+        return ok;
+      }
+      if (Status ok = SolveLocal(); !ok) {
+        return ok;
+      }
+    }
+    for (std::size_t i = decided_; i < decided_ + count; ++i) {
+      ready_.push_back(MakeUpdate(nodes_[i]));
+    }
+    decided_ += count;
+    while (decided_ > kHistory) {
+      nodes_.pop_front();
+      --decided_;
+    }
+    return {};
+  }
+
+  // Gaussian mean of the camera's speed around every open frame.
+  void UpdatePanWeights() {
+    const double sigma = kPanWindowS * options_.frames_per_second;
+    const auto reach = static_cast<std::ptrdiff_t>(std::ceil(2.5 * sigma));
+    std::vector<Eigen::Vector2d> speed(nodes_.size(), Eigen::Vector2d::Zero());
+    for (std::size_t i = 1; i < nodes_.size(); ++i) {
+      const Eigen::Matrix3d& f = nodes_[i].motion.to_from;
+      speed[i] = f.block<2, 1>(0, 2) / f(2, 2) * options_.frames_per_second;
+    }
+    for (std::size_t i = decided_; i < nodes_.size(); ++i) {
+      Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+      double total = 0.0;
+      for (std::ptrdiff_t d = -reach; d <= reach; ++d) {
+        const std::ptrdiff_t j = static_cast<std::ptrdiff_t>(i) + d;
+        if (j < 0 || j >= static_cast<std::ptrdiff_t>(nodes_.size())) {
+          continue;
+        }
+        const double x = static_cast<double>(d) / sigma;
+        const double w = std::exp(-0.5 * x * x);
+        sum += w * speed[static_cast<std::size_t>(j)];
+        total += w;
+      }
+      const double ratio = sum.norm() / total / kPanSpeed;
+      nodes_[i].pan_weight = std::max(kMinPanWeight, std::exp(-ratio * ratio));
+    }
+  }
+
+  // sqrt of a temporal weight, halfway between the frames it spans.
+  [[nodiscard]] double TemporalWeight(double weight, std::size_t last, std::size_t span) const {
+    double smallest = 1.0;
+    for (std::size_t i = last - span; i <= last; ++i) {
+      smallest = std::min(smallest, nodes_[i].pan_weight);
+    }
+    return weight * std::sqrt(smallest);
+  }
+
+  Status SolveGlobal() {
+    ceres::Problem problem;
+    const double f = options_.focal_ratio;
+    const double known = options_.rotation_known ? kKnownRotationFactor : 1.0;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      problem.AddParameterBlock(nodes_[i].theta.data(), kUpdateSize);
+      if (i < decided_) {
+        problem.SetParameterBlockConstant(nodes_[i].theta.data());
+        continue;
+      }
+      DataResidual data{points_, f, options_.tripod ? 0.05 : 1.0, {}};
+      data.reluctance = {0.0,
+                         0.0,
+                         0.0,
+                         known * kShiftReluctance,
+                         known * kShiftReluctance,
+                         known * kZoomReluctance,
+                         known * kStretchReluctance,
+                         known * kStretchReluctance};
+      problem.AddResidualBlock(
+          new ceres::AutoDiffCostFunction<DataResidual, DataResidual::kSize, kUpdateSize>(
+              new DataResidual(data)),
+          nullptr, nodes_[i].theta.data());
+      problem.AddResidualBlock(
+          new ceres::AutoDiffCostFunction<CropResidual, CropResidual::kSize, kUpdateSize>(
+              new CropResidual{f, kCropWeight, options_.min_crop_ratio, options_.aspect}),
+          nullptr, nodes_[i].theta.data());
+      if (options_.tripod && i >= 1) {
+        problem.AddResidualBlock(
+            new ceres::AutoDiffCostFunction<VelocityResidual, VelocityResidual::kSize, kUpdateSize,
+                                            kUpdateSize>(
+                new VelocityResidual{points_, f, kTripodWeight, nodes_[i].motion.to_from}),
+            nullptr, nodes_[i - 1].theta.data(), nodes_[i].theta.data());
+      }
+      if (i >= 2) {
+        problem.AddResidualBlock(
+            new ceres::AutoDiffCostFunction<AccelerationResidual, AccelerationResidual::kSize,
+                                            kUpdateSize, kUpdateSize, kUpdateSize>(
+                new AccelerationResidual{points_, f, TemporalWeight(acceleration_weight_, i, 2),
+                                         nodes_[i - 1].motion.to_from, nodes_[i].motion.to_from}),
+            nullptr, nodes_[i - 2].theta.data(), nodes_[i - 1].theta.data(),
+            nodes_[i].theta.data());
+      }
+      if (i >= 3) {
+        problem.AddResidualBlock(
+            new ceres::AutoDiffCostFunction<JerkResidual, JerkResidual::kSize, kUpdateSize,
+                                            kUpdateSize, kUpdateSize, kUpdateSize>(new JerkResidual{
+                points_, f, TemporalWeight(jerk_weight_, i, 3), nodes_[i - 2].motion.to_from,
+                nodes_[i - 1].motion.to_from, nodes_[i].motion.to_from}),
+            nullptr, nodes_[i - 3].theta.data(), nodes_[i - 2].theta.data(),
+            nodes_[i - 1].theta.data(), nodes_[i].theta.data());
+      }
+    }
+    ceres::Solver::Options solver;
+    solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+    solver.max_num_iterations = kMaxIterations;
+    solver.function_tolerance = 1e-4;
+    solver.initial_trust_region_radius = 1e8;  // nearly linear: begin with a full step
+    solver.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &problem, &summary);
+    if (!summary.IsSolutionUsable()) {
+      return Fail(ErrorCode::kInternal, "smoothing the camera path failed: {}", summary.message);
+    }
+    return {};
+  }
+
+  Status SolveLocal();
+
+  [[nodiscard]] PathUpdate MakeUpdate(const Node& node) const {
+    PathUpdate update;
+    update.rung = node.motion.rung;
+    update.path_begins = node.motion.path_begins;
+    update.rectified_from_output = UpdateHomography(node.theta, options_.focal_ratio);
+    std::vector<Eigen::Vector2d> coefficients(modes_.count());
+    double largest = 0.0;
+    for (std::size_t k = 0; k < coefficients.size(); ++k) {
+      coefficients[k] = node.local_path[k] - node.local_smooth[k];
+      largest = std::max(largest, coefficients[k].norm());
+    }
+    if (largest > 0.0) {
+      update.mesh_update = modes_.Synthesize(coefficients);
+      for (Eigen::Vector2d& d : update.mesh_update) {
+        // Soft limit: a local update this large is a wrong one, and must not tear the picture.
+        d /= std::sqrt(1.0 + d.squaredNorm() / (kMaxLocalUpdate * kMaxLocalUpdate));
+      }
+    }
+    return update;
+  }
+
+  PathSmootherOptions options_;
+  PathPoints points_;
+  SpatialModes modes_;
+  std::size_t look_ahead_ = 60;
+  std::size_t commit_ = 30;
+  double acceleration_weight_ = 0.0;
+  double jerk_weight_ = 0.0;
+  std::deque<Node> nodes_;   // kHistory decided frames, then the open ones
+  std::size_t decided_ = 0;  // how many of them are decided
+  std::vector<PathUpdate> ready_;
+};
+
+// |P - C|^2 (1 + neighbour term of the mode) for one spatial mode.
+class LocalDataCost final : public ceres::SizedCostFunction<2, 2> {
+ public:
+  LocalDataCost(double weight, Eigen::Vector2d path) : weight_(weight), path_(std::move(path)) {}
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    for (int i = 0; i < 2; ++i) {
+      residuals[i] = weight_ * (parameters[0][i] - path_(i));
+    }
+    if (jacobians != nullptr && jacobians[0] != nullptr) {
+      Eigen::Map<Eigen::Matrix<double, 2, 2, Eigen::RowMajor>> j(jacobians[0]);
+      j = weight_ * Eigen::Matrix2d::Identity();
+    }
+    return true;
+  }
+
+ private:
+  double weight_;
+  Eigen::Vector2d path_;
+};
+
+// Second and third differences of P for one spatial mode.
+class LocalTemporalCost final : public ceres::SizedCostFunction<4, 2, 2, 2, 2> {
+ public:
+  LocalTemporalCost(double acceleration, double jerk)
+      : coefficients_{{{0.0, -jerk},
+                       {acceleration, 3.0 * jerk},
+                       {-2.0 * acceleration, -3.0 * jerk},
+                       {acceleration, jerk}}} {}
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    Eigen::Map<Eigen::Vector4d> r(residuals);
+    r.setZero();
+    for (std::size_t k = 0; k < coefficients_.size(); ++k) {
+      const Eigen::Map<const Eigen::Vector2d> p(parameters[k]);
+      r.head<2>() += coefficients_[k][0] * p;
+      r.tail<2>() += coefficients_[k][1] * p;
+      if (jacobians != nullptr && jacobians[k] != nullptr) {
+        Eigen::Map<Eigen::Matrix<double, 4, 2, Eigen::RowMajor>> j(jacobians[k]);
+        j.topRows<2>() = coefficients_[k][0] * Eigen::Matrix2d::Identity();
+        j.bottomRows<2>() = coefficients_[k][1] * Eigen::Matrix2d::Identity();
+      }
+    }
+    return true;
+  }
+
+ private:
+  std::array<std::array<double, 2>, 4> coefficients_;
+};
+
+Status CeresPathSmoother::SolveLocal() {
+  // Without local motion in the window (a gyro clip without parallax, no texture) nothing to do.
+  double motion = 0.0;
+  for (const Node& node : nodes_) {
+    for (std::size_t k = 0; k < modes_.count(); ++k) {
+      motion = std::max(motion, (node.local_path[k] - nodes_.front().local_path[k]).norm());
+    }
+  }
+  if (motion == 0.0) {
+    return {};
+  }
+  ceres::Problem problem;
+  for (std::size_t k = 0; k < modes_.count(); ++k) {
+    const double data_weight =
+        kLocalDataWeight * std::sqrt(1.0 + kNeighbourWeight * modes_.stiffness(k));
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      double* p = nodes_[i].local_smooth[k].data();
+      problem.AddParameterBlock(p, 2);
+      if (i < decided_) {
+        problem.SetParameterBlockConstant(p);
+        continue;
+      }
+      problem.AddResidualBlock(new LocalDataCost(data_weight, nodes_[i].local_path[k]), nullptr, p);
+      if (i >= 3) {
+        problem.AddResidualBlock(new LocalTemporalCost(TemporalWeight(acceleration_weight_, i, 2),
+                                                       TemporalWeight(jerk_weight_, i, 3)),
+                                 nullptr, nodes_[i - 3].local_smooth[k].data(),
+                                 nodes_[i - 2].local_smooth[k].data(),
+                                 nodes_[i - 1].local_smooth[k].data(), p);
+      }
+    }
+  }
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  solver.max_num_iterations = 3;  // linear: one step, one to see that it was right
+  solver.initial_trust_region_radius = 1e12;
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+  if (!summary.IsSolutionUsable()) {
+    return Fail(ErrorCode::kInternal, "smoothing the local camera paths failed: {}",
+                summary.message);
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<PathSmoother>> MakeCeresPathSmoother(const PathSmootherOptions& options) {
+  if (!(options.aspect > 0.0) || !(options.frames_per_second > 0.0) ||
+      !(options.focal_ratio > 0.0) || !(options.smoothness_s >= 0.0) ||
+      !(options.min_crop_ratio > 0.0 && options.min_crop_ratio <= 1.0) ||
+      options.mesh_columns < 1 || options.mesh_rows < 1) {
+    return Fail(ErrorCode::kInvalidArgument,
+                "path smoother: aspect {}, {} fps, focal ratio {}, smoothness {} s, crop ratio {}, "
+                "mesh {}x{}: all must be positive, the crop ratio at most 1",
+                options.aspect, options.frames_per_second, options.focal_ratio,
+                options.smoothness_s, options.min_crop_ratio, options.mesh_columns,
+                options.mesh_rows);
+  }
+  return std::make_unique<CeresPathSmoother>(options);
+}
+
+}  // namespace rsstab::stabilizer

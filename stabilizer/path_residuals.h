@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef RSSTAB_STABILIZER_PATH_RESIDUALS_H_
+#define RSSTAB_STABILIZER_PATH_RESIDUALS_H_
+
+#include <ceres/rotation.h>
+
+#include <Eigen/Core>
+#include <array>
+
+#include "stabilizer/normalized_coordinates.h"
+
+namespace rsstab::stabilizer {
+
+// The global update B(theta) of one frame, output -> rectified, with its eight degrees of freedom
+// ordered by how willingly a camera gives them:
+//   B = K exp([w]x) K^-1 A,   A = [e^s (1+a)  b  tx; b  e^s (1-a)  ty; 0 0 1],  K = diag(f, f, 1)
+//   theta = (w_x, w_y, w_z, t_x, t_y, s, a, b)
+// A turn (w) keeps the perspective right for a real camera; shift, zoom (s) and stretch (a, b) are
+// what a turn cannot tell.
+inline constexpr int kUpdateSize = 8;
+using UpdateParameters = std::array<double, kUpdateSize>;
+
+template <typename T>
+using Point2 = Eigen::Matrix<T, 2, 1>;
+
+template <typename T>
+[[nodiscard]] Point2<T> TurnPoint(const T* rotation, double focal_ratio, const Point2<T>& p) {
+  const T ray[3] = {p.x() / focal_ratio, p.y() / focal_ratio, T(1.0)};
+  T turned[3];
+  ceres::AngleAxisRotatePoint(rotation, ray, turned);
+  return {turned[0] / turned[2] * focal_ratio, turned[1] / turned[2] * focal_ratio};
+}
+
+// B(theta) q
+template <typename T>
+[[nodiscard]] Point2<T> ApplyUpdate(const T* theta, double focal_ratio, const Point2<T>& q) {
+  using std::exp;
+  const T zoom = exp(theta[5]);
+  const Point2<T> p(zoom * (1.0 + theta[6]) * q.x() + theta[7] * q.y() + theta[3],
+                    theta[7] * q.x() + zoom * (1.0 - theta[6]) * q.y() + theta[4]);
+  return TurnPoint(theta, focal_ratio, p);
+}
+
+// B(theta)^-1 p
+template <typename T>
+[[nodiscard]] Point2<T> ApplyInverseUpdate(const T* theta, double focal_ratio, const Point2<T>& p) {
+  using std::exp;
+  const T back[3] = {-theta[0], -theta[1], -theta[2]};
+  const Point2<T> turned = TurnPoint(back, focal_ratio, p);
+  const T zoom = exp(theta[5]);
+  const T m00 = zoom * (1.0 + theta[6]);
+  const T m11 = zoom * (1.0 - theta[6]);
+  const T determinant = m00 * m11 - theta[7] * theta[7];
+  const T x = turned.x() - theta[3];
+  const T y = turned.y() - theta[4];
+  return {(m11 * x - theta[7] * y) / determinant, (m00 * y - theta[7] * x) / determinant};
+}
+
+// Motion is looked at in four points near the corners; residuals are in pixels at
+// kReferenceWidthPx.
+inline constexpr std::size_t kNumPathPoints = 4;
+using PathPoints = std::array<Eigen::Vector2d, kNumPathPoints>;
+inline constexpr double kPathPointShare = 0.8;  // of the half width and half height
+
+[[nodiscard]] inline PathPoints MakePathPoints(double aspect) {
+  const double x = 0.5 * kPathPointShare;
+  const double y = 0.5 * kPathPointShare * aspect;
+  return {{{-x, -y}, {x, -y}, {-x, y}, {x, y}}};
+}
+
+// Where output point q of one frame lies in the output of the next:
+//   M = B(next)^-1 F B(current), F: rectified current frame -> rectified next frame
+template <typename T>
+[[nodiscard]] Point2<T> OutputMotion(const T* theta, const T* theta_next, const Eigen::Matrix3d& f,
+                                     double focal_ratio, const Eigen::Vector2d& q) {
+  const Point2<T> in_current = ApplyUpdate<T>(theta, focal_ratio, q.cast<T>());
+  const T w = f(2, 0) * in_current.x() + f(2, 1) * in_current.y() + f(2, 2);
+  const Point2<T> in_next((f(0, 0) * in_current.x() + f(0, 1) * in_current.y() + f(0, 2)) / w,
+                          (f(1, 0) * in_current.x() + f(1, 1) * in_current.y() + f(1, 2)) / w);
+  return ApplyInverseUpdate<T>(theta_next, focal_ratio, in_next);
+}
+
+// |P(t) - C(t)|: how far the update moves the picture; plus the reluctance to use anything but a
+// turn.
+struct DataResidual {
+  PathPoints points;
+  double focal_ratio = 0.8;
+  double weight = 1.0;
+  std::array<double, kUpdateSize> reluctance{};  // per component of theta, px per unit
+
+  static constexpr int kSize = 2 * static_cast<int>(kNumPathPoints) + kUpdateSize;
+
+  template <typename T>
+  bool operator()(const T* theta, T* residual) const {
+    for (std::size_t i = 0; i < kNumPathPoints; ++i) {
+      const Point2<T> moved = ApplyUpdate<T>(theta, focal_ratio, points[i].cast<T>());
+      const Point2<T> r = (moved - points[i].cast<T>()) * T(weight * kReferenceWidthPx);
+      residual[2 * i] = r.x();
+      residual[2 * i + 1] = r.y();
+    }
+    for (std::size_t k = 0; k < reluctance.size(); ++k) {
+      residual[2 * kNumPathPoints + k] = reluctance[k] * theta[k];
+    }
+    return true;
+  }
+};
+
+// Change of the output's motion over three frames (its acceleration): zero for a camera that pans
+// steadily or stands still.
+struct AccelerationResidual {
+  PathPoints points;
+  double focal_ratio = 0.8;
+  double weight = 1.0;
+  Eigen::Matrix3d f0 = Eigen::Matrix3d::Identity();  // frame 0 -> 1
+  Eigen::Matrix3d f1 = Eigen::Matrix3d::Identity();  // frame 1 -> 2
+
+  static constexpr int kSize = 2 * static_cast<int>(kNumPathPoints);
+
+  template <typename T>
+  bool operator()(const T* t0, const T* t1, const T* t2, T* residual) const {
+    for (std::size_t i = 0; i < kNumPathPoints; ++i) {
+      const Point2<T> r = (OutputMotion<T>(t1, t2, f1, focal_ratio, points[i]) -
+                           OutputMotion<T>(t0, t1, f0, focal_ratio, points[i])) *
+                          T(weight * kReferenceWidthPx);
+      residual[2 * i] = r.x();
+      residual[2 * i + 1] = r.y();
+    }
+    return true;
+  }
+};
+
+// Change of that acceleration over four frames (jerk).
+struct JerkResidual {
+  PathPoints points;
+  double focal_ratio = 0.8;
+  double weight = 1.0;
+  Eigen::Matrix3d f0 = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d f1 = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d f2 = Eigen::Matrix3d::Identity();
+
+  static constexpr int kSize = 2 * static_cast<int>(kNumPathPoints);
+
+  template <typename T>
+  bool operator()(const T* t0, const T* t1, const T* t2, const T* t3, T* residual) const {
+    for (std::size_t i = 0; i < kNumPathPoints; ++i) {
+      const Point2<T> r = (OutputMotion<T>(t2, t3, f2, focal_ratio, points[i]) -
+                           OutputMotion<T>(t1, t2, f1, focal_ratio, points[i]) * T(2.0) +
+                           OutputMotion<T>(t0, t1, f0, focal_ratio, points[i])) *
+                          T(weight * kReferenceWidthPx);
+      residual[2 * i] = r.x();
+      residual[2 * i + 1] = r.y();
+    }
+    return true;
+  }
+};
+
+// The output's motion itself; with a tripod it shall be zero.
+struct VelocityResidual {
+  PathPoints points;
+  double focal_ratio = 0.8;
+  double weight = 1.0;
+  Eigen::Matrix3d f0 = Eigen::Matrix3d::Identity();
+
+  static constexpr int kSize = 2 * static_cast<int>(kNumPathPoints);
+
+  template <typename T>
+  bool operator()(const T* t0, const T* t1, T* residual) const {
+    for (std::size_t i = 0; i < kNumPathPoints; ++i) {
+      const Point2<T> r =
+          (OutputMotion<T>(t0, t1, f0, focal_ratio, points[i]) - points[i].cast<T>()) *
+          T(weight * kReferenceWidthPx);
+      residual[2 * i] = r.x();
+      residual[2 * i + 1] = r.y();
+    }
+    return true;
+  }
+};
+
+// How far the corners of the crop window leave the picture. Zero inside.
+struct CropResidual {
+  double focal_ratio = 0.8;
+  double weight = 1.0;
+  double crop_ratio = 0.8;
+  double aspect = 9.0 / 16.0;
+
+  static constexpr int kSize = 8;
+
+  template <typename T>
+  bool operator()(const T* theta, T* residual) const {
+    const double x = 0.5 * crop_ratio;
+    const double y = 0.5 * crop_ratio * aspect;
+    const std::array<Eigen::Vector2d, 4> corners = {{{-x, -y}, {x, -y}, {-x, y}, {x, y}}};
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Point2<T> moved = ApplyUpdate<T>(theta, focal_ratio, corners[i].cast<T>());
+      residual[2 * i] = Overhang(moved.x(), 0.5);
+      residual[2 * i + 1] = Overhang(moved.y(), 0.5 * aspect);
+    }
+    return true;
+  }
+
+ private:
+  template <typename T>
+  [[nodiscard]] T Overhang(const T& position, double limit) const {
+    const double scale = weight * kReferenceWidthPx;
+    if (position > T(limit)) {
+      return (position - limit) * scale;
+    }
+    if (position < T(-limit)) {
+      return (position + limit) * scale;
+    }
+    return T(0.0);
+  }
+};
+
+}  // namespace rsstab::stabilizer
+
+#endif  // RSSTAB_STABILIZER_PATH_RESIDUALS_H_
