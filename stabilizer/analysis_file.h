@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef RSSTAB_STABILIZER_ANALYSIS_FILE_H_
+#define RSSTAB_STABILIZER_ANALYSIS_FILE_H_
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "igf/base/camera.h"
+#include "igf/base/motion_field.h"
+#include "igf/base/result.h"
+#include "stabilizer/global_motion.h"
+#include "stabilizer/luma_proxy.h"
+
+namespace rsstab::stabilizer {
+
+// What pass 1 found out about one frame, and all that pass 2 needs to render it.
+struct FrameAnalysis {
+  std::int64_t pts = 0;  // presentation time in the stream's ticks: the key of the record
+  LumaFingerprint fingerprint{};
+  MotionRung rung = MotionRung::kHold;
+  bool path_begins = false;
+  // Planned crop ratio with adaptive zoom, in (0, 1].
+  double crop_ratio = 1.0;
+  // Path update without crop, normalised coordinates (camera_path.h).
+  Eigen::Matrix3d rectified_from_output = Eigen::Matrix3d::Identity();
+  // Local path update, px of the analysed size; default-made = none.
+  MotionField mesh_update;
+  // RS field, px of the analysed size; default-made = none.
+  MotionField rs_field;
+};
+
+// What pass 1 found out about the clip.
+struct ClipAnalysis {
+  std::string program_version;
+  int width = 0;  // analysed (full) size, px
+  int height = 0;
+  double frames_per_second = 0.0;
+  std::int64_t num_frames = 0;
+  double smallest_crop_ratio = 1.0;  // over all frames: what one fixed zoom has to be
+  std::string rs_source = "none";    // "gyro", "none", ...
+  std::string rs_reason;             // why that source, one sentence
+  double readout_s = 0.0;
+  std::optional<double> gyro_offset_s;
+  std::optional<Camera> camera;  // of the analysed size
+  std::string options;           // as given, "--name value ..." for the record
+};
+
+// The analysis file: a magic number with the format's version, one record per frame, the clip's
+// summary as JSON, a footer; every part with a CRC-32. docs/analysis-file.md tells every byte.
+// Fields are stored as 16-bit fractions of their largest displacement (error below 1/65000 of it).
+
+// Writes beside `path` and renames in Finish(); without Finish() nothing is left. In order.
+class AnalysisWriter {
+ public:
+  // Errors: kIo naming path and cause.
+  [[nodiscard]] static Result<std::unique_ptr<AnalysisWriter>> Create(const std::string& path);
+  ~AnalysisWriter();
+  AnalysisWriter(const AnalysisWriter&) = delete;
+  AnalysisWriter& operator=(const AnalysisWriter&) = delete;
+
+  [[nodiscard]] Status Append(const FrameAnalysis& frame);
+  // Completes the file; num_frames and smallest_crop_ratio are filled in here.
+  [[nodiscard]] Status Finish(ClipAnalysis clip);
+
+ private:
+  struct Impl;
+  explicit AnalysisWriter(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+// Reads records in order; memory for one record.
+class AnalysisReader {
+ public:
+  // Errors: kNotFound; kCorruptData (not an analysis file, cut off, a checksum differs);
+  // kUnsupported (a newer format).
+  [[nodiscard]] static Result<std::unique_ptr<AnalysisReader>> Open(const std::string& path);
+  ~AnalysisReader();
+  AnalysisReader(const AnalysisReader&) = delete;
+  AnalysisReader& operator=(const AnalysisReader&) = delete;
+
+  [[nodiscard]] const ClipAnalysis& clip() const;
+  // The next record; empty at the end.
+  [[nodiscard]] Result<std::optional<FrameAnalysis>> Next();
+
+ private:
+  struct Impl;
+  explicit AnalysisReader(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rsstab::stabilizer
+
+#endif  // RSSTAB_STABILIZER_ANALYSIS_FILE_H_

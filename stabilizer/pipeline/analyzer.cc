@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stabilizer/pipeline/analyzer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "stabilizer/feature_tracks.h"
+#include "stabilizer/luma_proxy.h"
+#include "stabilizer/pipeline/track_spool.h"
+#include "stabilizer/pipeline/version.h"
+
+namespace rsstab::pipeline {
+namespace {
+
+// Synchronisation looks at a minute of the clip at most, thinned to this many points a frame:
+// 4 MB, and more would not make it surer.
+constexpr std::int64_t kMaxSyncFrames = 1800;
+constexpr std::size_t kMaxSyncMatches = 80;
+constexpr std::int64_t kCancelCheckEvery = 16;
+
+PointTracks Thin(const PointTracks& tracks) {
+  PointTracks thinned = tracks;
+  const std::size_t n = tracks.matches.size();
+  if (n > kMaxSyncMatches) {
+    thinned.matches.clear();
+    for (std::size_t i = 0; i < kMaxSyncMatches; ++i) {
+      thinned.matches.push_back(tracks.matches[i * n / kMaxSyncMatches]);
+    }
+  }
+  return thinned;
+}
+
+}  // namespace
+
+struct Analyzer::Impl {
+  StabilizeOptions options;
+  ClipGeometry clip;
+  RsInputs inputs;
+  Logger logger;
+  stabilizer::FeatureTracker tracker{stabilizer::FeatureTrackerOptions{}};
+  std::unique_ptr<stabilizer::AnalysisWriter> writer;
+  RsSelection selection;
+  std::unique_ptr<MotionStage> stage;
+  std::unique_ptr<TrackSpool> spool;  // only while the source waits for the tracks
+  std::vector<PointTracks> sync_tracks;
+  std::int64_t num_frames = 0;
+
+  Status StartStage(Result<RsSelection> selected) {
+    if (!selected) {
+      return Propagate(std::move(selected.error()));
+    }
+    selection = std::move(*selected);
+    logger->info("rolling shutter: {}", selection.reason);
+    auto created = MotionStage::Create(options, clip, &selection, logger);
+    if (!created) {
+      return Propagate(std::move(created.error()));
+    }
+    stage = std::move(*created);
+    return {};
+  }
+
+  Status WriteReady() {
+    for (const stabilizer::FrameAnalysis& frame : stage->TakeReady()) {
+      if (Status ok = writer->Append(frame); !ok) {
+        return ok;
+      }
+    }
+    return {};
+  }
+
+  Status Advance(const FrameObservation& observation, const FrameView* image) {
+    if (Status ok = stage->Push(observation, image); !ok) {
+      return ok;
+    }
+    return WriteReady();
+  }
+
+  Status Replay(const std::function<bool()>& cancelled) {
+    if (Status ok = spool->Rewind(); !ok) {
+      return ok;
+    }
+    for (std::int64_t i = 0;; ++i) {
+      auto observation = spool->Next();
+      if (!observation) {
+        return Propagate(std::move(observation.error()));
+      }
+      if (!*observation) {
+        return {};
+      }
+      if (cancelled && i % kCancelCheckEvery == 0 && cancelled()) {
+        return Fail(ErrorCode::kCancelled, "stopped");
+      }
+      if (Status ok = Advance(**observation, nullptr); !ok) {
+        return ok;
+      }
+    }
+  }
+};
+
+Analyzer::Analyzer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Analyzer::~Analyzer() = default;
+
+Result<std::unique_ptr<Analyzer>> Analyzer::Create(const StabilizeOptions& options,
+                                                   const ClipGeometry& clip, RsInputs inputs,
+                                                   const std::string& analysis_path,
+                                                   Logger logger) {
+  if (Status ok = Validate(options); !ok) {
+    return Propagate(std::move(ok.error()));
+  }
+  auto impl = std::make_unique<Impl>();
+  impl->options = options;
+  impl->clip = clip;
+  impl->inputs = std::move(inputs);
+  impl->logger = logger ? std::move(logger) : SilentLogger();
+  if (NeedsTracks(options, impl->inputs)) {
+    auto spool = TrackSpool::Create();
+    if (!spool) {
+      return Propagate(std::move(spool.error()));
+    }
+    impl->spool = std::move(*spool);
+  } else {
+    Status ok = impl->StartStage(SelectRsSource(options, clip, impl->inputs, {}, impl->logger));
+    if (!ok) {
+      return Propagate(std::move(ok.error()));
+    }
+  }
+  auto writer = stabilizer::AnalysisWriter::Create(analysis_path);
+  if (!writer) {
+    return Propagate(std::move(writer.error()));
+  }
+  impl->writer = std::move(*writer);
+  return std::unique_ptr<Analyzer>(new Analyzer(std::move(impl)));
+}
+
+Status Analyzer::PushFrame(const FrameView& frame, std::int64_t pts, double time_s) {
+  Impl& s = *impl_;
+  auto proxy = stabilizer::MakeLumaProxy(frame);
+  if (!proxy) {
+    return Propagate(std::move(proxy.error()));
+  }
+  auto tracked = s.tracker.Push(*proxy, time_s);
+  if (!tracked) {
+    return Propagate(std::move(tracked.error()));
+  }
+  FrameObservation observation;
+  observation.pts = pts;
+  observation.time_s = time_s;
+  observation.fingerprint = stabilizer::FingerprintOf(*proxy);
+  observation.attempted_points = tracked->attempted;
+  observation.tracks = std::move(tracked->tracks);
+  ++s.num_frames;
+  if (s.stage) {
+    return s.Advance(observation, &frame);
+  }
+  if (s.num_frames > 1 && s.num_frames <= kMaxSyncFrames) {
+    s.sync_tracks.push_back(Thin(observation.tracks));
+  }
+  return s.spool->Append(observation);
+}
+
+Result<stabilizer::ClipAnalysis> Analyzer::Finish(const std::function<bool()>& cancelled) {
+  Impl& s = *impl_;
+  if (s.num_frames == 0) {
+    return Fail(ErrorCode::kCorruptData, "the clip has no frame that can be decoded");
+  }
+  if (!s.stage) {
+    Status ok = s.StartStage(SelectRsSource(s.options, s.clip, s.inputs, s.sync_tracks, s.logger));
+    if (ok) {
+      ok = s.Replay(cancelled);
+    }
+    if (!ok) {
+      return Propagate(std::move(ok.error()));
+    }
+  }
+  if (Status ok = s.stage->Finish(); !ok) {
+    return Propagate(std::move(ok.error()));
+  }
+  if (Status ok = s.WriteReady(); !ok) {
+    return Propagate(std::move(ok.error()));
+  }
+  stabilizer::ClipAnalysis clip;
+  clip.program_version = kProgramVersion;
+  clip.width = s.clip.width;
+  clip.height = s.clip.height;
+  clip.frames_per_second = s.clip.frames_per_second;
+  clip.num_frames = s.num_frames;
+  clip.rs_source = s.selection.source ? s.selection.source->Name() : "none";
+  clip.rs_reason = s.selection.reason;
+  clip.readout_s = s.selection.readout_s;
+  clip.gyro_offset_s = s.selection.gyro_offset_s;
+  clip.camera = s.selection.camera;
+  for (const auto& option : StabilizeOptionTable()) {
+    const std::string value = option.get(s.options);
+    if (!value.empty()) {
+      clip.options += (clip.options.empty() ? "--" : " --") + option.name + " " + value;
+    }
+  }
+  if (Status ok = s.writer->Finish(clip); !ok) {
+    return Propagate(std::move(ok.error()));
+  }
+  return clip;
+}
+
+}  // namespace rsstab::pipeline

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef RSSTAB_STABILIZER_PIPELINE_FRAME_OBSERVATION_H_
+#define RSSTAB_STABILIZER_PIPELINE_FRAME_OBSERVATION_H_
+
+#include <cstdint>
+
+#include "igf/base/point_tracks.h"
+#include "stabilizer/luma_proxy.h"
+
+namespace rsstab::pipeline {
+
+// What pass 1 keeps of a frame once its picture is gone.
+struct FrameObservation {
+  std::int64_t pts = 0;  // stream ticks
+  double time_s = 0.0;   // middle row, video clock
+  stabilizer::LumaFingerprint fingerprint{};
+  int attempted_points = 0;  // looked for; the matches are those found
+  PointTracks tracks;        // previous frame -> this one, proxy pixels
+};
+
+}  // namespace rsstab::pipeline
+
+#endif  // RSSTAB_STABILIZER_PIPELINE_FRAME_OBSERVATION_H_

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stabilizer/pipeline/motion_stage.h"
+
+#include <cmath>
+#include <deque>
+#include <utility>
+
+#include "igf/base/rotation.h"
+#include "stabilizer/crop_planner.h"
+#include "stabilizer/global_motion.h"
+#include "stabilizer/mesh_motion.h"
+#include "stabilizer/normalized_coordinates.h"
+#include "stabilizer/path_smoother.h"
+#include "stabilizer/pipeline/warp_assembly.h"
+#include "stabilizer/scene_cut.h"
+
+namespace rsstab::pipeline {
+namespace {
+
+using stabilizer::FrameAnalysis;
+using stabilizer::MotionRung;
+using stabilizer::RectifiedMatch;
+
+// Zoom may change over this long to either side of a frame that needs it.
+constexpr double kZoomReachS = 1.0;
+// Focal length where nobody knows it, in picture widths (64 degrees): phones and action cameras in
+// their linear modes lie between 0.6 and 1.0.
+constexpr double kDefaultFocalRatio = 0.8;
+// Steps of the fixed point that takes a recorded pixel to the corrected picture: x + G(x) = y.
+constexpr int kRectifySteps = 3;
+
+stabilizer::PathSmootherOptions SmootherOptions(const StabilizeOptions& options,
+                                                const ClipGeometry& clip,
+                                                const RsSelection& selection) {
+  stabilizer::PathSmootherOptions smoother;
+  smoother.aspect = static_cast<double>(clip.height) / clip.width;
+  smoother.frames_per_second = clip.frames_per_second;
+  smoother.smoothness_s = options.smoothness_s;
+  smoother.tripod = options.tripod;
+  smoother.min_crop_ratio = options.min_crop_ratio;
+  if (options.zoom == ZoomMode::kFixed && options.fixed_zoom) {
+    smoother.min_crop_ratio = std::max(smoother.min_crop_ratio, 1.0 / *options.fixed_zoom);
+  }
+  smoother.focal_ratio =
+      selection.camera ? selection.camera->fx / selection.camera->width : kDefaultFocalRatio;
+  smoother.rotation_known = selection.source != nullptr && selection.source->Name() == "gyro";
+  smoother.mesh_columns = options.mesh_columns;
+  smoother.mesh_rows = options.mesh_rows;
+  return smoother;
+}
+
+}  // namespace
+
+struct MotionStage::Impl {
+  Impl(const StabilizeOptions& stabilize_options, const ClipGeometry& geometry,
+       RsSelection* rs_selection, Logger log)
+      : options(stabilize_options),
+        clip(geometry),
+        selection(rs_selection),
+        logger(std::move(log)),
+        mesh(stabilize_options.mesh_columns, stabilize_options.mesh_rows,
+             static_cast<double>(geometry.height) / geometry.width),
+        mesh_solver(mesh),
+        zoom(static_cast<std::size_t>(std::lround(kZoomReachS * geometry.frames_per_second))) {}
+
+  StabilizeOptions options;
+  ClipGeometry clip;
+  RsSelection* selection;
+  Logger logger;
+  stabilizer::MeshGrid mesh;
+  stabilizer::MeshMotionSolver mesh_solver;
+  std::unique_ptr<stabilizer::PathSmoother> smoother;
+  stabilizer::ZoomPlanner zoom;
+
+  std::int64_t num_frames = 0;
+  std::int64_t num_without_rs = 0;  // frames that the RS source could not tell
+  MotionField previous_field;
+  double previous_time_s = 0.0;
+  stabilizer::LumaFingerprint previous_fingerprint{};
+  std::deque<FrameAnalysis> waiting_for_path;
+  std::deque<FrameAnalysis> waiting_for_zoom;
+  std::vector<FrameAnalysis> ready;
+
+  // Recorded pixel (proxy size) -> rectified, normalised. Empty where the lens has no ray.
+  [[nodiscard]] std::optional<Eigen::Vector2d> Rectify(const Eigen::Vector2f& proxy_pixel,
+                                                       const PointTracks& tracks,
+                                                       const MotionField& field) const {
+    const Eigen::Vector2d n =
+        stabilizer::ToNormalized(proxy_pixel.cast<double>(), tracks.width, tracks.height);
+    // The proxy may round its height: scale each axis to the full picture.
+    const Eigen::Vector2d recorded((proxy_pixel.x() + 0.5) * clip.width / tracks.width - 0.5,
+                                   (proxy_pixel.y() + 0.5) * clip.height / tracks.height - 0.5);
+    const bool lens = selection->camera && selection->camera->model != LensModel::kPinhole;
+    if (field.columns() == 0 && !lens) {
+      return n;
+    }
+    Eigen::Vector2d p = recorded;
+    if (field.columns() != 0) {
+      for (int i = 0; i < kRectifySteps; ++i) {
+        p = recorded - field.Sample(p);
+      }
+    }
+    if (lens) {
+      const auto ray = selection->camera->UnprojectPixel(p);
+      if (!ray) {
+        return std::nullopt;
+      }
+      const Eigen::Vector3d ideal = selection->camera->K() * *ray;
+      p = ideal.hnormalized();
+    }
+    return stabilizer::ToNormalized(p, clip.width, clip.height);
+  }
+
+  // What the RS source knows of the turn between two frames, normalised; empty when nothing.
+  [[nodiscard]] std::optional<Eigen::Matrix3d> PredictedMotion(double from_s, double to_s) const {
+    if (!selection->source || !selection->camera) {
+      return std::nullopt;
+    }
+    const auto from = selection->source->CameraFromWorld(from_s);
+    const auto to = selection->source->CameraFromWorld(to_s);
+    if (!from || !to) {
+      return std::nullopt;
+    }
+    const Eigen::Matrix3d to_from = stabilizer::NormalizedFromPixels(clip.width, clip.height) *
+                                    RotationHomography(selection->camera->K(), *to, *from) *
+                                    stabilizer::PixelsFromNormalized(clip.width, clip.height);
+    return Eigen::Matrix3d(to_from / to_from(2, 2));
+  }
+
+  [[nodiscard]] MotionField EstimateField(const FrameObservation& o, const FrameView* image) {
+    if (!selection->source) {
+      return {};
+    }
+    const auto motion = selection->source->EstimateMotion({num_frames, o.time_s, image});
+    if (!motion) {
+      if (num_without_rs++ == 0) {
+        logger->debug("frame {}: {}", num_frames, motion.error().message);
+      }
+      return {};
+    }
+    return motion->field;
+  }
+
+  [[nodiscard]] stabilizer::FrameMotion EstimateMotion(const FrameObservation& o,
+                                                       const MotionField& field) {
+    stabilizer::FrameMotion motion;
+    if (num_frames == 0) {
+      motion.path_begins = true;
+      return motion;
+    }
+    std::vector<RectifiedMatch> matches;
+    matches.reserve(o.tracks.matches.size());
+    for (const PointMatch& m : o.tracks.matches) {
+      const auto from = Rectify(m.from, o.tracks, previous_field);
+      const auto to = Rectify(m.to, o.tracks, field);
+      if (from && to) {
+        matches.push_back({*from, *to});
+      }
+    }
+    stabilizer::GlobalMotionOptions global_options;
+    if (const auto predicted = PredictedMotion(previous_time_s, o.time_s)) {
+      global_options.predicted = *predicted;
+      global_options.finest = MotionRung::kSimilarity;
+    }
+    const stabilizer::GlobalMotion global =
+        stabilizer::EstimateGlobalMotion(matches, global_options);
+    motion.to_from = global.to_from;
+    motion.rung = global.rung;
+    const stabilizer::SceneChangeEvidence evidence = {
+        stabilizer::FingerprintDistance(o.fingerprint, previous_fingerprint), o.attempted_points,
+        global.num_inliers};
+    if (stabilizer::IsSceneCut(evidence)) {
+      motion = {};
+      motion.path_begins = true;
+      logger->debug("frame {}: scene cut", num_frames);
+      return motion;
+    }
+    const bool well_supported = global.rung == global_options.finest;
+    if (well_supported) {
+      motion.local = mesh_solver.Solve(matches, global.to_from);
+      if (!motion.local.empty()) {
+        motion.rung = MotionRung::kMesh;
+      }
+    }
+    return motion;
+  }
+
+  void TakeUpdates() {
+    for (stabilizer::PathUpdate& update : smoother->TakeReady()) {
+      FrameAnalysis frame = std::move(waiting_for_path.front());
+      waiting_for_path.pop_front();
+      frame.rung = update.rung;
+      frame.path_begins = update.path_begins;
+      frame.rectified_from_output = update.rectified_from_output;
+      if (!update.mesh_update.empty()) {
+        frame.mesh_update =
+            MotionField(clip.width, clip.height, mesh.columns() + 1, mesh.rows() + 1);
+        auto vertices = frame.mesh_update.vertices();
+        for (std::size_t i = 0; i < vertices.size(); ++i) {
+          vertices[i] = (update.mesh_update[i] * clip.width).cast<float>();
+        }
+      }
+      double allowed = stabilizer::LargestCropRatio(
+          AssembleWarp(frame, clip.width, clip.height, selection->camera));
+      if (options.zoom == ZoomMode::kFixed && options.fixed_zoom) {
+        allowed = std::min(allowed, 1.0 / *options.fixed_zoom);
+      }
+      zoom.Push(allowed, frame.path_begins);
+      waiting_for_zoom.push_back(std::move(frame));
+    }
+    TakeZooms();
+  }
+
+  void TakeZooms() {
+    for (const double ratio : zoom.TakeReady()) {
+      waiting_for_zoom.front().crop_ratio = ratio;
+      ready.push_back(std::move(waiting_for_zoom.front()));
+      waiting_for_zoom.pop_front();
+    }
+  }
+};
+
+MotionStage::MotionStage(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+MotionStage::~MotionStage() = default;
+
+Result<std::unique_ptr<MotionStage>> MotionStage::Create(const StabilizeOptions& options,
+                                                         const ClipGeometry& clip,
+                                                         RsSelection* selection, Logger logger) {
+  if (clip.width < 1 || clip.height < 1 || !(clip.frames_per_second > 0.0)) {
+    return Fail(ErrorCode::kInvalidArgument,
+                "a clip of {}x{} at {} frames per second is not possible", clip.width, clip.height,
+                clip.frames_per_second);
+  }
+  auto smoother = stabilizer::MakeCeresPathSmoother(SmootherOptions(options, clip, *selection));
+  if (!smoother) {
+    return Propagate(std::move(smoother.error()));
+  }
+  auto impl = std::make_unique<Impl>(options, clip, selection, std::move(logger));
+  impl->smoother = std::move(*smoother);
+  return std::unique_ptr<MotionStage>(new MotionStage(std::move(impl)));
+}
+
+Status MotionStage::Push(const FrameObservation& observation, const FrameView* image) {
+  Impl& s = *impl_;
+  FrameAnalysis frame;
+  frame.pts = observation.pts;
+  frame.fingerprint = observation.fingerprint;
+  frame.rs_field = s.EstimateField(observation, image);
+  const stabilizer::FrameMotion motion = s.EstimateMotion(observation, frame.rs_field);
+  s.previous_field = frame.rs_field;
+  s.previous_time_s = observation.time_s;
+  s.previous_fingerprint = observation.fingerprint;
+  ++s.num_frames;
+  s.waiting_for_path.push_back(std::move(frame));
+  if (Status ok = s.smoother->Push(motion); !ok) {
+    return ok;
+  }
+  s.TakeUpdates();
+  return {};
+}
+
+Status MotionStage::Finish() {
+  Impl& s = *impl_;
+  if (Status ok = s.smoother->Finish(); !ok) {
+    return ok;
+  }
+  s.TakeUpdates();
+  s.zoom.Finish();
+  s.TakeZooms();
+  if (s.num_without_rs > 0) {
+    s.logger->warn("{} of {} frames keep their rolling shutter: the {} source has no data for them",
+                   s.num_without_rs, s.num_frames, s.selection->source->Name());
+  }
+  return {};
+}
+
+std::vector<FrameAnalysis> MotionStage::TakeReady() { return std::exchange(impl_->ready, {}); }
+
+}  // namespace rsstab::pipeline

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stabilizer/pipeline/renderer.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "igf/base/parallel_for.h"
+#include "stabilizer/crop_planner.h"
+#include "stabilizer/luma_proxy.h"
+#include "stabilizer/pipeline/warp_assembly.h"
+#include "stabilizer/plane_warper.h"
+
+namespace rsstab::pipeline {
+namespace {
+
+// Looking at a picture costs a millisecond, so only some are compared with pass 1.
+constexpr std::int64_t kFingerprintEvery = 30;
+// The same frame decoded again differs by less than one level, re-encoded by two.
+constexpr double kMaxFingerprintDistance = 4.0;
+// Steps of a thousandth until the composed map covers the picture; see Compose().
+constexpr int kMaxCropSteps = 100;
+constexpr double kCropStep = 0.999;
+
+}  // namespace
+
+struct Renderer::Impl {
+  Impl(std::unique_ptr<stabilizer::AnalysisReader> analysis, const StabilizeOptions& render_options,
+       Logger log)
+      : reader(std::move(analysis)),
+        options(render_options),
+        logger(std::move(log)),
+        workers(ResolveThreadCount(render_options.num_threads)),
+        grid(stabilizer::DefaultMapGrid(reader->clip().width, reader->clip().height)) {}
+
+  std::unique_ptr<stabilizer::AnalysisReader> reader;
+  StabilizeOptions options;
+  Logger logger;
+  WorkerPool workers;
+  stabilizer::MapGrid grid;
+  stabilizer::PlaneWarper warper;
+  std::int64_t num_frames = 0;
+
+  // The hard guarantee of no empty pixel: the planner looked at the outline of the crop window in a
+  // finite number of points; the map that is rendered is checked on every vertex, which is exact.
+  [[nodiscard]] stabilizer::BackwardMap Compose(const stabilizer::FrameAnalysis& frame) const {
+    const stabilizer::ClipAnalysis& clip = reader->clip();
+    const stabilizer::FrameWarp warp = AssembleWarp(frame, clip.width, clip.height, clip.camera);
+    double crop = options.zoom == ZoomMode::kFixed ? clip.smallest_crop_ratio : frame.crop_ratio;
+    stabilizer::BackwardMap map =
+        stabilizer::ComposeBackwardMap(stabilizer::WithCrop(warp, crop), grid);
+    for (int step = 0; step < kMaxCropSteps && stabilizer::OverhangPx(map) > 0.0; ++step) {
+      crop *= kCropStep;
+      map = stabilizer::ComposeBackwardMap(stabilizer::WithCrop(warp, crop), grid);
+    }
+    if (stabilizer::OverhangPx(map) > 0.0) {
+      // No window of this warp is inside the picture: leave the frame as it was recorded.
+      return {clip.width, clip.height, grid.columns, grid.rows};
+    }
+    return map;
+  }
+};
+
+Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Renderer::~Renderer() = default;
+
+Result<std::unique_ptr<Renderer>> Renderer::Create(const StabilizeOptions& options,
+                                                   const std::string& analysis_path, int width,
+                                                   int height, Logger logger) {
+  auto reader = stabilizer::AnalysisReader::Open(analysis_path);
+  if (!reader) {
+    return Propagate(std::move(reader.error()));
+  }
+  const stabilizer::ClipAnalysis& clip = (*reader)->clip();
+  if (clip.width != width || clip.height != height) {
+    return Fail(ErrorCode::kInvalidArgument,
+                "{} was made for a clip of {}x{}, this one is {}x{}: analyse this clip",
+                analysis_path, clip.width, clip.height, width, height);
+  }
+  return std::unique_ptr<Renderer>(
+      new Renderer(std::make_unique<Impl>(std::move(*reader), options, std::move(logger))));
+}
+
+const stabilizer::ClipAnalysis& Renderer::clip() const { return impl_->reader->clip(); }
+
+Result<Frame> Renderer::Render(const Frame& frame, std::int64_t pts) {
+  Impl& s = *impl_;
+  auto record = s.reader->Next();
+  if (!record) {
+    return Propagate(std::move(record.error()));
+  }
+  if (!*record) {
+    return Fail(ErrorCode::kInvalidArgument,
+                "the clip goes on after frame {}, where the analysed one ended: analyse this clip",
+                s.num_frames);
+  }
+  const stabilizer::FrameAnalysis& analysis = **record;
+  if (analysis.pts != pts) {
+    return Fail(
+        ErrorCode::kInvalidArgument,
+        "frame {} is shown at tick {}, in the analysed clip at {}: it is another clip or was "
+        "re-timed; analyse this clip",
+        s.num_frames, pts, analysis.pts);
+  }
+  const FrameView view = frame.View();
+  if (s.num_frames % kFingerprintEvery == 0) {
+    const auto proxy = stabilizer::MakeLumaProxy(view);
+    if (!proxy) {
+      return Propagate(proxy.error());
+    }
+    if (stabilizer::FingerprintDistance(stabilizer::FingerprintOf(*proxy), analysis.fingerprint) >
+        kMaxFingerprintDistance) {
+      return Fail(ErrorCode::kInvalidArgument,
+                  "frame {} does not look like the one that was analysed: analyse this clip",
+                  s.num_frames);
+    }
+  }
+  auto output = AllocateFrame(frame.layout, frame.width, frame.height);
+  if (!output) {
+    return Propagate(std::move(output.error()));
+  }
+  output->origin = frame.origin;
+  if (Status ok =
+          s.warper.Warp(view, s.Compose(analysis), s.options.interpolation, *output, s.workers);
+      !ok) {
+    return Propagate(std::move(ok.error()));
+  }
+  ++s.num_frames;
+  return std::move(*output);
+}
+
+Status Renderer::Finish() {
+  if (impl_->num_frames < impl_->reader->clip().num_frames) {
+    return Fail(ErrorCode::kInvalidArgument,
+                "the clip ends after {} frames, the analysed one had {}: analyse this clip",
+                impl_->num_frames, impl_->reader->clip().num_frames);
+  }
+  return {};
+}
+
+}  // namespace rsstab::pipeline
