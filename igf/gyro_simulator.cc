@@ -22,10 +22,17 @@ Result<GyroLog> SimulateGyro(const OrientationTrack& orientation, double begin_s
                 "The gyro's offset, bias and noise must be finite, the noise not negative.");
   }
   const double dt = 1.0 / options.sampling_hz;
-  if (!(end_s > begin_s) || !orientation.Covers(begin_s - dt, end_s + dt)) {
+  const double window_s = options.averaging_s;
+  // A hair of room for round-off in a caller's 1 / sampling_hz.
+  if (!(window_s > 0.0 && window_s <= dt * (1.0 + 1e-9))) {
     return Fail(ErrorCode::kInvalidArgument,
-                "A gyro log over {:.4f} to {:.4f} s needs a motion that covers it and one sample "
-                "more; it covers {:.4f} to {:.4f} s.",
+                "A gyro at {} Hz averages each sample over at most {:.6f} s, not {} s.",
+                options.sampling_hz, dt, window_s);
+  }
+  if (!(end_s > begin_s) || !orientation.Covers(begin_s - window_s, end_s + window_s)) {
+    return Fail(ErrorCode::kInvalidArgument,
+                "A gyro log over {:.4f} to {:.4f} s needs a motion that covers it and a little "
+                "more; this one covers {:.4f} to {:.4f} s.",
                 begin_s, end_s, orientation.start_s(), orientation.end_s());
   }
   SeededRandom random(options.noise_seed);
@@ -34,7 +41,7 @@ Result<GyroLog> SimulateGyro(const OrientationTrack& orientation, double begin_s
   for (std::size_t i = 0; i < count; ++i) {
     const double time_s = begin_s + static_cast<double>(i) * dt;
     const std::optional<Eigen::Vector3d> rate =
-        orientation.MeanRate(time_s - dt / 2.0, time_s + dt / 2.0);
+        orientation.MeanRate(time_s - window_s / 2.0, time_s + window_s / 2.0);
     if (!rate) {
       return Fail(ErrorCode::kInternal, "The motion ends before {:.6f} s.", time_s);
     }

@@ -74,21 +74,21 @@ PresetMotion::PresetMotion(MotionPreset preset, std::uint64_t seed, double durat
   switch (preset) {
     case MotionPreset::kHandheld: {
       const std::array<Band, 3> bands = {{
-          {0.12, 1.0, 8, 1.0, {14.0, 18.0, 8.0}},  // sway
-          {1.0, 5.0, 10, 1.3, {3.0, 3.4, 1.8}},    // correction by the arms
-          {6.0, 12.0, 8, 1.0, {0.55, 0.55, 0.3}},  // tremor
+          {0.12, 1.0, 8, 1.0, {28.0, 38.0, 16.0}},  // sway
+          {1.0, 5.0, 10, 1.3, {7.6, 8.6, 4.2}},     // correction by the arms
+          {6.0, 12.0, 8, 1.0, {1.1, 1.1, 0.6}},     // tremor
       }};
       AddBands(bands, seed);
       break;
     }
     case MotionPreset::kWalking: {
       const std::array<Band, 6> bands = {{
-          {0.1, 0.8, 8, 1.0, {16.0, 28.0, 10.0}},   // drift of the gaze
-          {0.93, 0.97, 2, 0.0, {2.0, 11.0, 10.0}},  // one stride: left, right
-          {1.86, 1.94, 3, 0.0, {9.0, 3.0, 2.0}},    // one step: up, down
-          {3.7, 3.9, 3, 0.0, {3.0, 1.5, 1.0}},      // heel strikes, and their harmonics
-          {5.0, 8.5, 8, 1.0, {1.4, 1.1, 0.6}},
-          {8.5, 13.0, 8, 1.0, {0.5, 0.5, 0.3}},
+          {0.1, 0.8, 8, 1.0, {20.0, 34.0, 12.0}},   // drift of the gaze
+          {0.94, 0.96, 1, 0.0, {3.0, 18.0, 15.0}},  // one stride: left, right
+          {1.88, 1.92, 1, 0.0, {14.0, 5.0, 3.5}},   // one step: up, down
+          {3.6, 4.0, 2, 0.0, {5.5, 2.8, 2.0}},      // heel strikes, and their harmonics
+          {5.0, 8.5, 8, 1.0, {2.8, 2.3, 1.2}},
+          {8.5, 13.0, 8, 1.0, {1.0, 1.0, 0.6}},
       }};
       AddBands(bands, seed);
       break;
@@ -96,8 +96,8 @@ PresetMotion::PresetMotion(MotionPreset preset, std::uint64_t seed, double durat
     case MotionPreset::kVibration: {
       const std::array<Band, 3> bands = {{
           {0.08, 0.6, 8, 1.0, {20.0, 30.0, 12.0}},  // drift in the wind
-          {15.0, 30.0, 6, 0.5, {2.2, 2.2, 1.6}},    // frame and motors
-          {30.0, 60.0, 6, 0.5, {2.0, 2.0, 1.6}},
+          {15.0, 26.0, 6, 0.5, {2.35, 2.35, 0.9}},  // frame and motors
+          {30.0, 60.0, 6, 0.5, {1.4, 1.4, 0.6}},
       }};
       AddBands(bands, seed);
       break;
@@ -105,11 +105,11 @@ PresetMotion::PresetMotion(MotionPreset preset, std::uint64_t seed, double durat
     case MotionPreset::kFastPan: {
       const std::array<Band, 3> bands = {{
           {0.12, 1.0, 8, 1.0, {12.0, 12.0, 6.0}},
-          {1.0, 5.0, 10, 1.3, {1.8, 2.0, 1.0}},
-          {6.0, 12.0, 8, 1.0, {0.35, 0.35, 0.2}},
+          {1.0, 5.0, 10, 1.3, {4.6, 5.3, 2.6}},
+          {6.0, 12.0, 8, 1.0, {0.95, 0.95, 0.5}},
       }};
       AddBands(bands, seed);
-      constexpr double kPanDurationS = 0.8;
+      constexpr double kPanDurationS = 0.9;
       constexpr double kPanAngleRad = 55.0 * std::numbers::pi / 180.0;
       pans_ = {{duration_s / 4.0 - kPanDurationS / 2.0, kPanDurationS, kPanAngleRad},
                {duration_s * 2.0 / 3.0 - kPanDurationS / 2.0, kPanDurationS, -kPanAngleRad}};

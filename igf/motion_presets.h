@@ -72,8 +72,8 @@ class PresetMotion {
 };
 
 // Instants per second at which MakePresetOrientation samples a motion. SLERP between them is within
-// 1e-8 rad of the smooth motion (60 Hz at 3 mrad).
-inline constexpr double kPresetSamplingHz = 2000.0;
+// 5e-6 rad (0.003 px at 640 px width) of the smooth motion, even for a 60 Hz vibration.
+inline constexpr double kPresetSamplingHz = 4000.0;
 // How far before 0 and beyond the duration it reaches, s: readout of the first and last frame, and
 // the ends of a gyro log that begins early and stops late.
 inline constexpr double kPresetMarginS = 0.5;

@@ -39,6 +39,13 @@ class OrientationTrack {
   [[nodiscard]] double start_s() const { return times_s_.front() + offset_s_; }
   [[nodiscard]] double end_s() const { return times_s_.back() + offset_s_; }
 
+  // The samples, for those who store a track; i < num_samples(), times on the track's clock.
+  [[nodiscard]] std::size_t num_samples() const { return times_s_.size(); }
+  [[nodiscard]] double SampleTime(std::size_t i) const { return times_s_[i] + offset_s_; }
+  [[nodiscard]] const Eigen::Quaterniond& SampleWorldFromCamera(std::size_t i) const {
+    return world_from_camera_[i];
+  }
+
   // True when [from_s, to_s] (either order) lies within the span and touches the inside of no gap:
   // orientations in it may be compared.
   [[nodiscard]] bool Covers(double from_s, double to_s) const;
