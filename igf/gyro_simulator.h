@@ -15,7 +15,7 @@ struct GyroSimulatorOptions {
   double sampling_hz = 1000.0;  // 10..20000
   // Window over which a sample averages the rate, s, in (0, 1 / sampling_hz]. A short one is a
   // sensor without a low-pass filter.
-  double averaging_s = 0.5e-3;
+  double averaging_s = 0.25e-3;
   double offset_s = 0.0;                                 // t_video = t_gyro + offset_s
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();  // added to every sample
   double noise_rad_s = 0.0;                              // standard deviation per axis, >= 0

@@ -106,7 +106,7 @@ PresetMotion::PresetMotion(MotionPreset preset, std::uint64_t seed, double durat
       const std::array<Band, 3> bands = {{
           {0.12, 1.0, 8, 1.0, {12.0, 12.0, 6.0}},
           {1.0, 5.0, 10, 1.3, {4.6, 5.3, 2.6}},
-          {6.0, 12.0, 8, 1.0, {0.95, 0.95, 0.5}},
+          {6.0, 12.0, 8, 1.0, {0.78, 0.78, 0.42}},
       }};
       AddBands(bands, seed);
       constexpr double kPanDurationS = 0.9;
