@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/media/timestamp_repair.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace rsstab::media {
+namespace {
+
+// Beyond this a stamp is garbage whatever its unit (2^53 nanoseconds are 104 days), and doubles
+// would no longer hold it exactly.
+constexpr std::int64_t kLargestStamp = std::int64_t{1} << 53;
+// A gap at an end of the clip is absurd when it is longer than all the rest of the clip and than
+// this many frames: no camera pauses after its first picture for longer than it then films.
+constexpr double kAbsurdGapFrames = 300.0;
+// How many stamps at either end, as a share of all, are examined for that.
+constexpr double kEndShare = 0.02;
+// Fewer frames do not tell a constant rate.
+constexpr std::size_t kFewestForLine = 8;
+
+struct Entry {
+  std::int64_t value = 0;
+  bool is_known = false;
+};
+
+struct Line {
+  double start = 0.0;
+  double period = 0.0;
+  double tolerance = 0.0;
+
+  [[nodiscard]] double At(std::size_t index) const {
+    return start + period * static_cast<double>(index);
+  }
+  [[nodiscard]] bool Holds(std::size_t index, std::int64_t value) const {
+    return std::abs(static_cast<double>(value) - At(index)) <= tolerance;
+  }
+};
+
+bool IsUsable(const std::optional<std::int64_t>& stamp) {
+  return stamp && *stamp > -kLargestStamp && *stamp < kLargestStamp;
+}
+
+double Median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Robust line through (index, value): medians, so that a tenth of wild values does not matter.
+Line FitLine(const std::vector<Entry>& sorted) {
+  const std::size_t half = sorted.size() / 2;
+  std::vector<double> values;
+  values.reserve(sorted.size());
+  for (std::size_t k = 0; k + half < sorted.size(); ++k) {
+    values.push_back(static_cast<double>(sorted[k + half].value - sorted[k].value) /
+                     static_cast<double>(half));
+  }
+  Line line;
+  line.period = Median(values);
+  values.clear();
+  for (std::size_t k = 0; k < sorted.size(); ++k) {
+    values.push_back(static_cast<double>(sorted[k].value) - line.period * static_cast<double>(k));
+  }
+  line.start = Median(values);
+  // Stamps are rounded to ticks, cameras are steady to about a hundredth of a frame; never so wide
+  // that neighbours could be mistaken for each other.
+  line.tolerance = std::min(std::max(1.5, 0.02 * line.period), 0.4 * line.period);
+  return line;
+}
+
+double MedianGap(const std::vector<Entry>& sorted, double fallback) {
+  std::vector<double> gaps;
+  for (std::size_t k = 1; k < sorted.size(); ++k) {
+    if (sorted[k].value > sorted[k - 1].value) {
+      gaps.push_back(static_cast<double>(sorted[k].value - sorted[k - 1].value));
+    }
+  }
+  return gaps.empty() ? fallback : Median(gaps);
+}
+
+void SortByTime(std::vector<Entry>& entries) {
+  std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return a.value != b.value ? a.value < b.value : (a.is_known && !b.is_known);
+  });
+}
+
+// Gives entries without a value that of their predecessor in file order, which puts them next to
+// it when sorted.
+void FillUnknown(std::vector<Entry>& in_file_order) {
+  const auto first = std::find_if(in_file_order.begin(), in_file_order.end(),
+                                  [](const Entry& entry) { return entry.is_known; });
+  std::int64_t value = first == in_file_order.end() ? 0 : first->value;
+  for (Entry& entry : in_file_order) {
+    if (entry.is_known) {
+      value = entry.value;
+    } else {
+      entry.value = value;
+    }
+  }
+}
+
+// Forgets stamps that lie absurdly far before or after all others.
+void ForgetAbsurd(std::vector<Entry>& entries, double fallback_period) {
+  std::vector<std::int64_t> values;
+  for (const Entry& entry : entries) {
+    if (entry.is_known) {
+      values.push_back(entry.value);
+    }
+  }
+  if (values.size() < 3) {
+    return;
+  }
+  std::sort(values.begin(), values.end());
+  std::vector<double> gaps;
+  for (std::size_t k = 1; k < values.size(); ++k) {
+    gaps.push_back(static_cast<double>(values[k] - values[k - 1]));
+  }
+  const double typical = std::max(Median(gaps), fallback_period);
+  const auto examined = std::max<std::size_t>(
+      1, static_cast<std::size_t>(kEndShare * static_cast<double>(values.size())));
+  std::size_t begin = 0;
+  std::size_t end = values.size();
+  for (std::size_t k = 1; k <= examined && k < values.size() / 2; ++k) {
+    const auto rest = static_cast<double>(values[values.size() - 1 - examined] - values[k]);
+    if (static_cast<double>(values[k] - values[k - 1]) >
+        std::max(kAbsurdGapFrames * typical, rest)) {
+      begin = k;
+    }
+  }
+  for (std::size_t k = 1; k <= examined && k < values.size() / 2; ++k) {
+    const std::size_t last = values.size() - k;  // first of the k last
+    const auto rest = static_cast<double>(values[last - 1] - values[begin]);
+    if (static_cast<double>(values[last] - values[last - 1]) >
+        std::max(kAbsurdGapFrames * typical, rest)) {
+      end = last;
+    }
+  }
+  for (Entry& entry : entries) {
+    if (entry.is_known && (entry.value < values[begin] || entry.value > values[end - 1])) {
+      entry.is_known = false;
+    }
+  }
+}
+
+// Replaces the times that are not original by even steps between their original neighbours. An
+// original that leaves no room for its predecessors is given up.
+void InterpolateDamaged(std::vector<TimestampPlan::Slot>& slots, double period) {
+  constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  std::size_t previous = kNone;  // last original
+  for (std::size_t k = 0; k < slots.size(); ++k) {
+    if (!slots[k].is_original) {
+      continue;
+    }
+    if (previous == kNone) {
+      for (std::size_t j = 0; j < k; ++j) {
+        slots[j].time = slots[k].time - std::llround(period * static_cast<double>(k - j));
+      }
+    } else {
+      const std::int64_t room = slots[k].time - slots[previous].time;
+      const auto steps = static_cast<std::int64_t>(k - previous);
+      if (room < steps) {
+        slots[k].is_original = false;
+        continue;
+      }
+      for (std::int64_t j = 1; j < steps; ++j) {
+        slots[previous + static_cast<std::size_t>(j)].time =
+            slots[previous].time + std::llround(static_cast<double>(room) * static_cast<double>(j) /
+                                                static_cast<double>(steps));
+      }
+    }
+    previous = k;
+  }
+  const std::size_t anchor = previous == kNone ? 0 : previous;
+  for (std::size_t k = anchor + 1; k < slots.size(); ++k) {
+    slots[k].time = slots[anchor].time + std::llround(period * static_cast<double>(k - anchor));
+  }
+}
+
+}  // namespace
+
+TimestampPlan::TimestampPlan(const std::vector<Packet>& packets, double fallback_period)
+    : period_(std::max(1.0, fallback_period)) {
+  if (packets.empty()) {
+    return;
+  }
+  const auto with_pts = static_cast<std::size_t>(std::count_if(
+      packets.begin(), packets.end(), [](const Packet& packet) { return IsUsable(packet.pts); }));
+  // Some containers carry decoding times only (AVI); sorted, they are still the times at which
+  // frames follow each other.
+  const bool only_dts = with_pts * 2 < packets.size();
+  std::vector<Entry> entries(packets.size());
+  for (std::size_t k = 0; k < packets.size(); ++k) {
+    const std::optional<std::int64_t>& stamp = only_dts ? packets[k].dts : packets[k].pts;
+    entries[k] = {IsUsable(stamp) ? *stamp : 0, IsUsable(stamp)};
+  }
+  ForgetAbsurd(entries, period_);
+  FillUnknown(entries);
+  SortByTime(entries);
+
+  slots_.resize(entries.size());
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    const bool repeated = k > 0 && entries[k].value == entries[k - 1].value;
+    slots_[k] = {entries[k].value, entries[k].is_known && !repeated};
+    is_damaged_ = is_damaged_ || !slots_[k].is_original;
+  }
+  period_ = std::max(1.0, MedianGap(entries, period_));
+
+  const bool tells_rate = entries.size() >= kFewestForLine;
+  const Line line = tells_rate ? FitLine(entries) : Line{};
+  std::size_t on_line = 0;
+  for (std::size_t k = 0; tells_rate && k < entries.size(); ++k) {
+    on_line += line.Holds(k, entries[k].value) ? 1 : 0;
+  }
+  is_constant_rate_ = tells_rate && line.period >= 1.0 && on_line == entries.size();
+  if (is_damaged_) {
+    const bool plainly_constant =
+        tells_rate && line.period >= 1.0 &&
+        static_cast<double>(on_line) >= kConstantShare * static_cast<double>(entries.size());
+    if (plainly_constant) {
+      period_ = line.period;
+      for (std::size_t k = 0; k < slots_.size(); ++k) {
+        const bool repeated = (k > 0 && entries[k].value == entries[k - 1].value) ||
+                              (k + 1 < entries.size() && entries[k].value == entries[k + 1].value);
+        slots_[k].is_original = entries[k].is_known && !repeated && line.Holds(k, entries[k].value);
+        if (!slots_[k].is_original) {
+          slots_[k].time = std::llround(line.At(k));
+        }
+      }
+      is_constant_rate_ = true;
+    } else {
+      InterpolateDamaged(slots_, period_);
+    }
+  }
+  if (only_dts) {
+    // Frames carry no stamp to be found by: they take the slots one after the other.
+    is_damaged_ = true;
+    for (Slot& slot : slots_) {
+      slot.is_original = false;
+    }
+  }
+}
+
+TimestampRepair::TimestampRepair(TimestampPlan plan, double fallback_period)
+    : plan_(std::move(plan)),
+      period_(plan_.slots().empty() ? std::max(1.0, fallback_period) : plan_.period()) {}
+
+void TimestampRepair::Push(std::optional<std::int64_t> stamp) {
+  Pending pending;
+  if (IsUsable(stamp)) {
+    pending.stamp = stamp;
+    const std::vector<TimestampPlan::Slot>& slots = plan_.slots();
+    const auto found = std::lower_bound(
+        slots.begin(), slots.end(), *stamp,
+        [](const TimestampPlan::Slot& slot, std::int64_t time) { return slot.time < time; });
+    if (found != slots.end() && found->time == *stamp && found->is_original) {
+      const auto slot = static_cast<std::size_t>(found - slots.begin());
+      const bool is_free =
+          slot >= next_slot_ &&
+          std::find(claimed_slots_.begin(), claimed_slots_.end(), slot) == claimed_slots_.end();
+      if (is_free) {
+        claimed_slots_.push_back(slot);
+        pending.slot = slot;
+      }
+    }
+  }
+  if (!pending.slot) {
+    ++unclaimed_frames_;
+  }
+  pending_.push_back(pending);
+}
+
+std::optional<std::int64_t> TimestampRepair::Pop() {
+  if (pending_.empty()) {
+    return std::nullopt;
+  }
+  return plan_.slots().empty() ? std::optional(PopUnplanned()) : PopPlanned();
+}
+
+std::int64_t TimestampRepair::Assign(std::int64_t time) {
+  if (last_time_) {
+    time = std::max(time, *last_time_ + 1);
+  }
+  if (pending_.front().stamp != time) {
+    ++changed_count_;
+  }
+  last_time_ = time;
+  pending_.pop_front();
+  return time;
+}
+
+std::optional<std::size_t> TimestampRepair::DamagedSlotInReach() const {
+  const std::vector<TimestampPlan::Slot>& slots = plan_.slots();
+  const std::size_t end = std::min(slots.size(), next_slot_ + 2 * kLookAhead);
+  for (std::size_t k = next_slot_; k < end; ++k) {
+    if (!slots[k].is_original) {
+      return k;
+    }
+  }
+  return std::nullopt;
+}
+
+// A frame that no packet accounts for, between the last frame and the next planned one.
+std::int64_t TimestampRepair::SurplusTime() const {
+  const std::vector<TimestampPlan::Slot>& slots = plan_.slots();
+  const std::optional<std::int64_t>& stamp = pending_.front().stamp;
+  const auto claimed = std::min_element(claimed_slots_.begin(), claimed_slots_.end());
+  if (stamp && (!last_time_ || *stamp > *last_time_) &&
+      (claimed == claimed_slots_.end() || *stamp < slots[*claimed].time)) {
+    return *stamp;
+  }
+  if (next_slot_ >= slots.size()) {
+    return last_time_.value_or(0) + std::llround(period_);
+  }
+  const std::int64_t next = slots[next_slot_].time;
+  return last_time_ ? *last_time_ + (next - *last_time_) / 2 : next - std::llround(period_);
+}
+
+std::optional<std::int64_t> TimestampRepair::PopPlanned() {
+  const std::vector<TimestampPlan::Slot>& slots = plan_.slots();
+  if (next_slot_ >= slots.size()) {
+    --unclaimed_frames_;  // no slot is left that any could have claimed
+    return Assign(SurplusTime());
+  }
+  // Two in a row mean that the decoder hands out no stamps: then slots are taken one by one.
+  const bool is_surplus = unclaimed_frames_ > 0 && !pending_.front().slot &&
+                          !DamagedSlotInReach() && !last_was_surplus_;
+  if (is_surplus) {
+    last_was_surplus_ = true;
+    --unclaimed_frames_;
+    return Assign(SurplusTime());
+  }
+  const auto first_claimed = std::min_element(claimed_slots_.begin(), claimed_slots_.end());
+  const bool has_claimed = first_claimed != claimed_slots_.end();
+  std::size_t slot = next_slot_;
+  if (has_claimed && *first_claimed == slot) {
+    claimed_slots_.erase(first_claimed);
+    last_was_surplus_ = false;
+  } else if (!slots[slot].is_original && unclaimed_frames_ > 0) {
+    --unclaimed_frames_;
+  } else if (!is_finished_ && pending_.size() <= kLookAhead) {
+    return std::nullopt;  // the next frames will tell
+  } else if (!has_claimed) {
+    // Only frames without a stamp of their own: in order.
+    slot = DamagedSlotInReach().value_or(next_slot_);
+    --unclaimed_frames_;
+  } else {
+    // The frames of the slots in between were lost in decoding.
+    const std::optional<std::size_t> damaged = DamagedSlotInReach();
+    if (unclaimed_frames_ > 0 && damaged && *damaged < *first_claimed) {
+      slot = *damaged;
+      --unclaimed_frames_;
+    } else {
+      slot = *first_claimed;
+      claimed_slots_.erase(first_claimed);
+    }
+  }
+  next_slot_ = slot + 1;
+  return Assign(slots[slot].time);
+}
+
+std::int64_t TimestampRepair::PopUnplanned() {
+  const std::optional<std::int64_t> stamp = pending_.front().stamp;
+  --unclaimed_frames_;
+  if (stamp && (!last_time_ || *stamp > *last_time_)) {
+    return Assign(*stamp);
+  }
+  return Assign(last_time_ ? *last_time_ + std::llround(period_) : 0);
+}
+
+}  // namespace rsstab::media
