@@ -181,9 +181,9 @@ TEST(TimestampRepair, MoreFramesThanPacketsStayInOrder) {
 // Any mixture of damage: the checks inside Repair() must hold.
 TEST(TimestampRepair, SurvivesRandomDamage) {
   std::mt19937 random(7);
-  const auto below = [&random](std::uint32_t limit) { return random() % limit; };
+  const auto below = [&random](std::uint32_t limit) { return static_cast<int>(random() % limit); };
   for (int run = 0; run < 2000; ++run) {
-    std::vector<Stamp> packets = Steady(1 + static_cast<int>(below(60)), 1 + below(40));
+    std::vector<Stamp> packets = Steady(1 + below(60), 1 + below(40));
     for (Stamp& stamp : packets) {
       if (below(8) == 0) {
         stamp = below(2) == 0 ? Stamp() : Stamp(below(500));
@@ -191,7 +191,7 @@ TEST(TimestampRepair, SurvivesRandomDamage) {
     }
     std::vector<Stamp> frames;
     for (const Stamp& stamp : packets) {
-      const std::uint32_t fate = below(20);
+      const int fate = below(20);
       if (fate != 0) {
         frames.push_back(fate == 1 ? Stamp() : stamp);
       }
