@@ -64,7 +64,7 @@ int AddRotation(double degrees, AVStream& stream) {
 }
 
 void FillOptions(const AVOutputFormat& format, bool can_seek, bool has_special_metadata,
-                 const WriterOptions& options, AvDictionary& target) {
+                 AVRational video_time_base, const WriterOptions& options, AvDictionary& target) {
   if (IsMp4Like(format)) {
     std::string flags;
     if (!can_seek) {
@@ -75,6 +75,10 @@ void FillOptions(const AVOutputFormat& format, bool can_seek, bool has_special_m
     }
     if (!flags.empty()) {
       target.Set("movflags", flags.c_str());
+    }
+    // A start after zero is stored on this clock, whose default is one millisecond.
+    if (video_time_base.num == 1 && video_time_base.den > 1000) {
+      target.Set("movie_timescale", std::to_string(video_time_base.den).c_str());
     }
   }
   for (const auto& [key, value] : options.muxer_options) {
@@ -221,7 +225,8 @@ int Muxer::Start(const AVOutputFormat& format, const MuxerVideo& video, const So
     return code;
   }
   AvDictionary dictionary;
-  FillOptions(format, file_.can_seek(), HasSpecialMetadata(context->metadata), options, dictionary);
+  FillOptions(format, file_.can_seek(), HasSpecialMetadata(context->metadata), video_time_base_,
+              options, dictionary);
   code = avformat_write_header(context, dictionary.address());
   if (code >= 0) {
     if (const AVDictionaryEntry* left =
