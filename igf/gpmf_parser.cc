@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -14,6 +13,7 @@
 
 #include "igf/gpmf_klv.h"
 #include "igf/gpmf_streams.h"
+#include "igf/gyro_text_rows.h"
 #include "igf/imu_axes.h"
 #include "igf/sample_clock.h"
 
@@ -26,12 +26,6 @@ constexpr double kMinReadout_ms = 0.1;
 constexpr double kMaxReadout_ms = 100.0;
 // Stamps and payload times may disagree by the sensor clock's error, not by more.
 constexpr double kMaxRateDisagreement = 0.05;
-
-std::string ToLower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 // Channel order of cameras whose streams lack ORIN and carry the HERO5's stream name although their
 // sensor is mounted another way. HERO6 and Fusion: gopro/gpmf-parser, docs/README.md ("Data
@@ -169,7 +163,8 @@ Result<Timing> FitTiming(const std::vector<GpmfGyroPacket>& packets,
     }
   }
   if (packets.size() == 1) {
-    const double duration_s = payloads[packets[0].payload].duration_s;
+    const double claimed_s = payloads[packets[0].payload].duration_s;
+    const double duration_s = claimed_s == 0.0 ? kGpmfNominalPayload_s : claimed_s;
     const double interval_s = duration_s / static_cast<double>(packets[0].channels.size());
     if (!(duration_s > 0.0) || !std::isfinite(by_track[0].time_s) || !std::isfinite(interval_s)) {
       return Fail(ErrorCode::kCorruptData,

@@ -14,11 +14,12 @@ namespace rsstab::igf {
 // One packet of a GoPro telemetry track (`gpmd`), not owned.
 struct GpmfPayload {
   std::span<const std::uint8_t> bytes;
-  double start_s = 0.0;     // as the container times it, video clock
-  double duration_s = 0.0;  // as the container claims; only looked at when there is one payload
+  double start_s = 0.0;  // as the container times it, video clock
+  // As the container claims; 0 where it does not. Only looked at when there is one payload.
+  double duration_s = 0.0;
 };
 
-// Nominal length of a payload, used where no container tells.
+// Nominal length of a payload, taken where no container tells.
 inline constexpr double kGpmfNominalPayload_s = 1.001;
 
 // Splits payloads that lie one after the other in a file (".raw", without container) and times them

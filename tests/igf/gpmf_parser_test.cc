@@ -422,11 +422,23 @@ TEST(GpmfParser, RefusesPayloadsWithoutUsableTime) {
   same.Add(payload, 0.0);
   EXPECT_THAT(ParseGpmf(same.payloads).error().message, HasSubstr("timestamps"));
   Track single;
-  single.Add(payload, 0.0, 0.0);
+  single.Add(payload, 0.0, -1.0);
   EXPECT_THAT(ParseGpmf(single.payloads).error().message, HasSubstr("duration"));
   single.payloads[0].start_s = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(ParseGpmf(single.payloads).error().message, HasSubstr("payload 0"));
   EXPECT_THAT(ParseGpmf({}).error().message, HasSubstr("no gyro"));
+}
+
+TEST(GpmfParser, ASinglePayloadSpreadsOverItsDuration) {
+  for (const double duration_s : {2.0, 0.0}) {
+    Track track;
+    track.Add(Device({PlainGyroStream()}), 3.0, duration_s);
+    const auto recording = ParseGpmf(track.payloads);
+    ASSERT_TRUE(recording.has_value()) << recording.error().message;
+    EXPECT_NEAR(recording->gyro.start_s(), 3.0, kExact);
+    EXPECT_NEAR(recording->gyro.mean_rate_hz(), duration_s > 0.0 ? 100.0 : 200.0 / 1.001, 1e-6);
+    EXPECT_TRUE(HasNote(*recording, "single telemetry payload"));
+  }
 }
 
 TEST(GpmfParser, SplitsWhereADeviceAppearsAgain) {

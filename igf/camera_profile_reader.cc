@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "igf/camera_profile_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "igf/gyro_text_rows.h"
+#include "igf/whole_file.h"
+
+namespace rsstab::igf {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::uint64_t kMaxProfileBytes = 16ULL << 20U;
+constexpr int kMaxSize = 65535;  // as AllocateFrame
+constexpr double kAspectTolerance = 0.01;
+constexpr double kNoStretchTolerance = 1e-3;
+
+// A value that is there and not null.
+const json* Find(const json& object, const char* key) {
+  const auto found = object.find(key);
+  return found == object.end() || found->is_null() ? nullptr : &*found;
+}
+
+// Empty when the key is absent.
+Result<std::optional<double>> NumberAt(const json& object, const char* key) {
+  const json* value = Find(object, key);
+  if (value == nullptr) {
+    return std::optional<double>();
+  }
+  if (!value->is_number() || !std::isfinite(value->get<double>())) {
+    return Fail(ErrorCode::kCorruptData, "\"{}\" is not a finite number", key);
+  }
+  return std::optional(value->get<double>());
+}
+
+Result<int> SizeAt(const json& object, const char* key) {
+  const Result<std::optional<double>> value = NumberAt(object, key);
+  if (!value) {
+    return Propagate(value.error());
+  }
+  if (!*value) {
+    return Fail(ErrorCode::kCorruptData, "\"{}\" is missing", key);
+  }
+  const double size = **value;
+  if (!(size >= 1.0 && size <= kMaxSize && size == std::floor(size))) {
+    return Fail(ErrorCode::kCorruptData, "\"{}\" is {}, not a whole number from 1 to {}", key, size,
+                kMaxSize);
+  }
+  return static_cast<int>(size);
+}
+
+Result<std::vector<double>> NumbersAt(const json& object, const char* key) {
+  std::vector<double> numbers;
+  const json* value = Find(object, key);
+  if (value == nullptr) {
+    return numbers;
+  }
+  constexpr std::size_t kMost = 16;
+  if (!value->is_array() || value->size() > kMost) {
+    return Fail(ErrorCode::kCorruptData, "\"{}\" is not a list of at most {} numbers", key, kMost);
+  }
+  for (const json& element : *value) {
+    if (!element.is_number() || !std::isfinite(element.get<double>())) {
+      return Fail(ErrorCode::kCorruptData, "\"{}\"[{}] is not a finite number", key,
+                  numbers.size());
+    }
+    numbers.push_back(element.get<double>());
+  }
+  return numbers;
+}
+
+Result<std::string> TextAt(const json& object, const char* key) {
+  const json* value = Find(object, key);
+  if (value == nullptr) {
+    return std::string();
+  }
+  if (!value->is_string()) {
+    return Fail(ErrorCode::kCorruptData, "\"{}\" is not text", key);
+  }
+  return value->get<std::string>();
+}
+
+Result<json> ParseObject(std::string_view text) {
+  json root = json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (!root.is_object()) {
+    return Fail(ErrorCode::kCorruptData, "not a whole JSON object; it may be cut off");
+  }
+  return root;
+}
+
+Result<CameraProfile> Checked(CameraProfile profile) {
+  if (Status status = profile.camera.Validate(); !status) {
+    return Propagate(Error{ErrorCode::kCorruptData, std::move(status).error().message});
+  }
+  return profile;
+}
+
+struct ModelName {
+  std::string_view name;
+  LensModel model;
+};
+constexpr std::array<ModelName, 3> kModels = {{{"pinhole", LensModel::kPinhole},
+                                               {"fisheye", LensModel::kFisheye},
+                                               {"brown", LensModel::kBrown}}};
+
+Result<LensModel> ModelFromName(const std::string& name) {
+  const auto found = std::find_if(kModels.begin(), kModels.end(),
+                                  [&](const ModelName& m) { return m.name == name; });
+  if (found == kModels.end()) {
+    return Fail(ErrorCode::kUnsupported,
+                "\"model\" is {}; known are \"pinhole\", \"fisheye\" and \"brown\"", Quoted(name));
+  }
+  return found->model;
+}
+
+// Signed readout of a lens profile, seconds.
+Result<std::optional<double>> ReadoutOf(const json& root) {
+  if (const json* global = Find(root, "global_shutter");
+      global != nullptr && global->is_boolean() && global->get<bool>()) {
+    return std::optional(0.0);
+  }
+  const Result<std::optional<double>> readout_ms = NumberAt(root, "frame_readout_time");
+  if (!readout_ms) {
+    return Propagate(readout_ms.error());
+  }
+  const json* direction = Find(root, "frame_readout_direction");
+  std::string name;
+  if (direction != nullptr) {
+    name = direction->is_string() ? ToLower(direction->get<std::string>())
+                                  : (direction->is_number_integer() ? direction->dump() : "?");
+  }
+  const bool is_upwards = name == "1" || name == "180" || name == "bottomtotop";
+  const bool is_downwards = name.empty() || name == "0" || name == "toptobottom";
+  if (!*readout_ms || (!is_upwards && !is_downwards)) {
+    return std::optional<double>();  // unknown, or along columns: as good as unknown
+  }
+  return std::optional(**readout_ms * (is_upwards ? -1e-3 : 1e-3));
+}
+
+// Refuses what the lens profile says beyond a central projection with OpenCV's distortion.
+Status CheckSupported(const json& root) {
+  for (const char* key : {"input_horizontal_stretch", "input_vertical_stretch"}) {
+    const Result<std::optional<double>> stretch = NumberAt(root, key);
+    if (!stretch) {
+      return Propagate(stretch.error());
+    }
+    // Gyroflow writes 0 or 1 for "none".
+    if (*stretch && **stretch != 0.0 && std::abs(**stretch - 1.0) > kNoStretchTolerance) {
+      return Fail(ErrorCode::kUnsupported,
+                  "\"{}\" is {}; stretched (anamorphic) video is not "
+                  "supported",
+                  key, **stretch);
+    }
+  }
+  const Result<std::string> digital = TextAt(root, "digital_lens");
+  if (!digital) {
+    return Propagate(digital.error());
+  }
+  if (!digital->empty()) {
+    return Fail(ErrorCode::kUnsupported, "\"digital_lens\" is {}, which is not supported",
+                Quoted(*digital));
+  }
+  return {};
+}
+
+// Trailing zeros say nothing; what remains must be a length that the model has.
+Status SetDistortion(std::vector<double> coefficients, LensModel model, Camera* camera) {
+  const std::vector<std::size_t> lengths = model == LensModel::kFisheye
+                                               ? std::vector<std::size_t>{4}
+                                               : std::vector<std::size_t>{4, 5, 8};
+  std::size_t used = coefficients.size();
+  while (used > 0 && coefficients[used - 1] == 0.0) {
+    --used;
+  }
+  const auto length =
+      std::find_if(lengths.begin(), lengths.end(), [&](std::size_t n) { return n >= used; });
+  if (length == lengths.end()) {
+    return Fail(ErrorCode::kUnsupported,
+                "\"distortion_coeffs\" has {} coefficients; this lens model takes {}", used,
+                lengths.back());
+  }
+  coefficients.resize(*length, 0.0);
+  camera->model = model;
+  camera->distortion = std::move(coefficients);
+  return {};
+}
+
+Status SetMatrix(const json& fisheye, Camera* camera) {
+  const json* matrix = Find(fisheye, "camera_matrix");
+  const bool is_3x3 =
+      matrix != nullptr && matrix->is_array() && matrix->size() == 3 &&
+      std::all_of(matrix->begin(), matrix->end(), [](const json& row) {
+        return row.is_array() && row.size() == 3 &&
+               std::all_of(row.begin(), row.end(), [](const json& v) { return v.is_number(); });
+      });
+  if (!is_3x3) {
+    return Fail(ErrorCode::kCorruptData,
+                "\"fisheye_params.camera_matrix\" is not a matrix of 3x3 numbers");
+  }
+  camera->fx = (*matrix)[0][0].get<double>();
+  camera->fy = (*matrix)[1][1].get<double>();
+  camera->cx = (*matrix)[0][2].get<double>();
+  camera->cy = (*matrix)[1][2].get<double>();
+  return {};
+}
+
+// A lens profile, or the part of a project file that is one.
+const json* LensProfileIn(const json& root) {
+  if (root.contains("fisheye_params")) {
+    return &root;
+  }
+  const json* data = Find(root, "calibration_data");
+  return data != nullptr && data->is_object() && data->contains("fisheye_params") ? data : nullptr;
+}
+
+Result<CameraProfile> CameraFromJson(const json& root) {
+  constexpr std::array<std::string_view, 9> kKeys = {
+      "width", "height", "fx", "fy", "cx", "cy", "readout_s", "model", "distortion"};
+  for (const auto& [key, value] : root.items()) {
+    if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end()) {
+      return Fail(
+          ErrorCode::kCorruptData,
+          "unknown key {}; a camera has width, height, fx, fy, cx, cy, readout_s, model and "
+          "distortion",
+          Quoted(key));
+    }
+  }
+  const Result<int> width = SizeAt(root, "width");
+  const Result<int> height = SizeAt(root, "height");
+  if (!width || !height) {
+    return Propagate(!width ? width.error() : height.error());
+  }
+  CameraProfile profile;
+  profile.camera = Camera::Pinhole(*width, *height, kFocalPrior * *width);
+  Camera& camera = profile.camera;
+  const std::array<std::pair<const char*, double*>, 4> lengths = {
+      {{"fx", &camera.fx}, {"fy", &camera.fy}, {"cx", &camera.cx}, {"cy", &camera.cy}}};
+  for (const auto& [key, target] : lengths) {
+    const Result<std::optional<double>> value = NumberAt(root, key);
+    if (!value) {
+      return Propagate(value.error());
+    }
+    *target = value->value_or(*target);
+  }
+  const bool has_fx = Find(root, "fx") != nullptr;
+  const bool has_fy = Find(root, "fy") != nullptr;
+  profile.focal_is_known = has_fx || has_fy;
+  if (has_fx != has_fy) {
+    camera.fx = camera.fy = has_fx ? camera.fx : camera.fy;
+  }
+  const Result<std::optional<double>> readout_s = NumberAt(root, "readout_s");
+  const Result<std::string> model_name = TextAt(root, "model");
+  Result<std::vector<double>> distortion = NumbersAt(root, "distortion");
+  if (!readout_s || !model_name || !distortion) {
+    return Propagate(!readout_s    ? readout_s.error()
+                     : !model_name ? model_name.error()
+                                   : distortion.error());
+  }
+  camera.readout_s = *readout_s;
+  const Result<LensModel> model = ModelFromName(model_name->empty() ? "pinhole" : *model_name);
+  if (!model) {
+    return Propagate(model.error());
+  }
+  camera.model = *model;
+  camera.distortion = *std::move(distortion);
+  return Checked(std::move(profile));
+}
+
+Result<CameraProfile> CameraFromLensProfile(const json& root) {
+  const json& fisheye = root["fisheye_params"];
+  if (!fisheye.is_object()) {
+    return Fail(ErrorCode::kCorruptData, "\"fisheye_params\" is not an object");
+  }
+  const json* size = Find(root, "calib_dimension");
+  if (size == nullptr || !size->is_object()) {
+    return Fail(ErrorCode::kCorruptData, "\"calib_dimension\" (an object with w and h) is missing");
+  }
+  const Result<int> width = SizeAt(*size, "w");
+  const Result<int> height = SizeAt(*size, "h");
+  if (!width || !height) {
+    return Propagate(!width ? width.error() : height.error(), "\"calib_dimension\"");
+  }
+  const Result<std::string> model_name = TextAt(root, "distortion_model");
+  Result<std::vector<double>> coefficients = NumbersAt(fisheye, "distortion_coeffs");
+  const Result<std::optional<double>> readout_s = ReadoutOf(root);
+  if (!model_name || !coefficients || !readout_s) {
+    return Propagate(!model_name     ? model_name.error()
+                     : !coefficients ? coefficients.error()
+                                     : readout_s.error());
+  }
+  const bool is_fisheye = model_name->empty() || *model_name == "opencv_fisheye";
+  if (!is_fisheye && *model_name != "opencv_standard") {
+    return Fail(ErrorCode::kUnsupported,
+                "\"distortion_model\" is {}; known are \"opencv_fisheye\" and \"opencv_standard\"",
+                Quoted(*model_name));
+  }
+  CameraProfile profile;
+  profile.camera.width = *width;
+  profile.camera.height = *height;
+  profile.camera.readout_s = *readout_s;
+  const LensModel model = is_fisheye ? LensModel::kFisheye : LensModel::kBrown;
+  Status status = CheckSupported(root);
+  if (status) {
+    status = SetMatrix(fisheye, &profile.camera);
+  }
+  if (status) {
+    status = SetDistortion(*std::move(coefficients), model, &profile.camera);
+  }
+  if (!status) {
+    return Propagate(std::move(status).error());
+  }
+  return Checked(std::move(profile));
+}
+
+}  // namespace
+
+Result<CameraProfile> ParseCameraJson(std::string_view text) {
+  return ParseObject(text).and_then(CameraFromJson);
+}
+
+Result<CameraProfile> ParseLensProfile(std::string_view text) {
+  return ParseObject(text).and_then([](const json& root) -> Result<CameraProfile> {
+    const json* profile = LensProfileIn(root);
+    if (profile == nullptr) {
+      return Fail(ErrorCode::kCorruptData, "\"fisheye_params\" is missing");
+    }
+    return CameraFromLensProfile(*profile);
+  });
+}
+
+std::string FormatCameraJson(const Camera& camera) {
+  const auto model = std::find_if(kModels.begin(), kModels.end(),
+                                  [&](const ModelName& m) { return m.model == camera.model; });
+  nlohmann::ordered_json root;
+  root["width"] = camera.width;
+  root["height"] = camera.height;
+  root["fx"] = camera.fx;
+  root["fy"] = camera.fy;
+  root["cx"] = camera.cx;
+  root["cy"] = camera.cy;
+  if (camera.readout_s) {
+    root["readout_s"] = *camera.readout_s;
+  }
+  root["model"] = std::string(model->name);
+  if (!camera.distortion.empty()) {
+    root["distortion"] = camera.distortion;
+  }
+  constexpr int kIndent = 2;
+  return root.dump(kIndent) + "\n";
+}
+
+Result<CameraProfile> ProfileForVideo(const CameraProfile& profile, int width, int height) {
+  const Camera& camera = profile.camera;
+  if (width < 1 || height < 1) {
+    return Fail(ErrorCode::kInvalidArgument, "video size {}x{} is not positive", width, height);
+  }
+  const double shape = static_cast<double>(camera.width) / camera.height;
+  const double video_shape = static_cast<double>(width) / height;
+  if (std::abs(video_shape / shape - 1.0) > kAspectTolerance) {
+    return Fail(ErrorCode::kInvalidArgument,
+                "the camera profile is for {}x{} (aspect {:.3f}) and the video is {}x{} ({:.3f}); "
+                "use a profile of the mode that the video was recorded in",
+                camera.width, camera.height, shape, width, height, video_shape);
+  }
+  return CameraProfile{camera.Rescaled(width, height), profile.focal_is_known};
+}
+
+Result<CameraProfile> ReadCameraProfile(const std::string& path) {
+  const Result<std::string> text = ReadWholeFile(path, kMaxProfileBytes);
+  if (!text) {
+    return Propagate(text.error());
+  }
+  Result<CameraProfile> profile =
+      ParseObject(*text).and_then([](const json& root) -> Result<CameraProfile> {
+        const json* lens = LensProfileIn(root);
+        return lens != nullptr ? CameraFromLensProfile(*lens) : CameraFromJson(root);
+      });
+  if (!profile) {
+    return Propagate(std::move(profile).error(), path);
+  }
+  return profile;
+}
+
+Status WriteCameraProfile(const std::string& path, const Camera& camera) {
+  if (Status status = camera.Validate(); !status) {
+    return Propagate(std::move(status).error(), path);
+  }
+  return WriteWholeFile(path, FormatCameraJson(camera));
+}
+
+}  // namespace rsstab::igf
