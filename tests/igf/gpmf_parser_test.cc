@@ -369,7 +369,7 @@ TEST(GpmfParser, KeepsWholeRowsOfATruncatedPayload) {
   track.Add(Device({PlainGyroStream()}), 0.0);
   track.Add(Device({PlainGyroStream()}), 1.0);
   Bytes cut = Device({PlainGyroStream()});
-  cut.resize(cut.size() - 605);  // in the middle of a row; a row is 6 bytes
+  cut.erase(cut.end() - 605, cut.end());  // in the middle of a row; a row is 6 bytes
   track.Add(cut, 2.0);
   const auto recording = ParseGpmf(track.payloads);
   ASSERT_TRUE(recording.has_value()) << recording.error().message;
