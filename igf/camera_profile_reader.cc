@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "igf/gyro_text_rows.h"
+#include "igf/json_fields_detail.h"
 #include "igf/whole_file.h"
 
 namespace rsstab::igf {
@@ -20,82 +21,8 @@ namespace {
 using nlohmann::json;
 
 constexpr std::uint64_t kMaxProfileBytes = 16ULL << 20U;
-constexpr int kMaxSize = 65535;  // as AllocateFrame
 constexpr double kAspectTolerance = 0.01;
 constexpr double kNoStretchTolerance = 1e-3;
-
-// A value that is there and not null.
-const json* Find(const json& object, const char* key) {
-  const auto found = object.find(key);
-  return found == object.end() || found->is_null() ? nullptr : &*found;
-}
-
-// Empty when the key is absent.
-Result<std::optional<double>> NumberAt(const json& object, const char* key) {
-  const json* value = Find(object, key);
-  if (value == nullptr) {
-    return std::optional<double>();
-  }
-  if (!value->is_number() || !std::isfinite(value->get<double>())) {
-    return Fail(ErrorCode::kCorruptData, "\"{}\" is not a finite number", key);
-  }
-  return std::optional(value->get<double>());
-}
-
-Result<int> SizeAt(const json& object, const char* key) {
-  const Result<std::optional<double>> value = NumberAt(object, key);
-  if (!value) {
-    return Propagate(value.error());
-  }
-  if (!*value) {
-    return Fail(ErrorCode::kCorruptData, "\"{}\" is missing", key);
-  }
-  const double size = **value;
-  if (!(size >= 1.0 && size <= kMaxSize && size == std::floor(size))) {
-    return Fail(ErrorCode::kCorruptData, "\"{}\" is {}, not a whole number from 1 to {}", key, size,
-                kMaxSize);
-  }
-  return static_cast<int>(size);
-}
-
-Result<std::vector<double>> NumbersAt(const json& object, const char* key) {
-  std::vector<double> numbers;
-  const json* value = Find(object, key);
-  if (value == nullptr) {
-    return numbers;
-  }
-  constexpr std::size_t kMost = 16;
-  if (!value->is_array() || value->size() > kMost) {
-    return Fail(ErrorCode::kCorruptData, "\"{}\" is not a list of at most {} numbers", key, kMost);
-  }
-  for (const json& element : *value) {
-    if (!element.is_number() || !std::isfinite(element.get<double>())) {
-      return Fail(ErrorCode::kCorruptData, "\"{}\"[{}] is not a finite number", key,
-                  numbers.size());
-    }
-    numbers.push_back(element.get<double>());
-  }
-  return numbers;
-}
-
-Result<std::string> TextAt(const json& object, const char* key) {
-  const json* value = Find(object, key);
-  if (value == nullptr) {
-    return std::string();
-  }
-  if (!value->is_string()) {
-    return Fail(ErrorCode::kCorruptData, "\"{}\" is not text", key);
-  }
-  return value->get<std::string>();
-}
-
-Result<json> ParseObject(std::string_view text) {
-  json root = json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!root.is_object()) {
-    return Fail(ErrorCode::kCorruptData, "not a whole JSON object; it may be cut off");
-  }
-  return root;
-}
 
 Result<CameraProfile> Checked(CameraProfile profile) {
   if (Status status = profile.camera.Validate(); !status) {
@@ -124,15 +51,15 @@ Result<LensModel> ModelFromName(const std::string& name) {
 
 // Signed readout of a lens profile, seconds.
 Result<std::optional<double>> ReadoutOf(const json& root) {
-  if (const json* global = Find(root, "global_shutter");
+  if (const json* global = FindField(root, "global_shutter");
       global != nullptr && global->is_boolean() && global->get<bool>()) {
     return std::optional(0.0);
   }
-  const Result<std::optional<double>> readout_ms = NumberAt(root, "frame_readout_time");
+  const Result<std::optional<double>> readout_ms = NumberField(root, "frame_readout_time");
   if (!readout_ms) {
     return Propagate(readout_ms.error());
   }
-  const json* direction = Find(root, "frame_readout_direction");
+  const json* direction = FindField(root, "frame_readout_direction");
   std::string name;
   if (direction != nullptr) {
     name = direction->is_string() ? ToLower(direction->get<std::string>())
@@ -149,7 +76,7 @@ Result<std::optional<double>> ReadoutOf(const json& root) {
 // Refuses what the lens profile says beyond a central projection with OpenCV's distortion.
 Status CheckSupported(const json& root) {
   for (const char* key : {"input_horizontal_stretch", "input_vertical_stretch"}) {
-    const Result<std::optional<double>> stretch = NumberAt(root, key);
+    const Result<std::optional<double>> stretch = NumberField(root, key);
     if (!stretch) {
       return Propagate(stretch.error());
     }
@@ -161,7 +88,7 @@ Status CheckSupported(const json& root) {
                   key, **stretch);
     }
   }
-  const Result<std::string> digital = TextAt(root, "digital_lens");
+  const Result<std::string> digital = TextField(root, "digital_lens");
   if (!digital) {
     return Propagate(digital.error());
   }
@@ -195,7 +122,7 @@ Status SetDistortion(std::vector<double> coefficients, LensModel model, Camera* 
 }
 
 Status SetMatrix(const json& fisheye, Camera* camera) {
-  const json* matrix = Find(fisheye, "camera_matrix");
+  const json* matrix = FindField(fisheye, "camera_matrix");
   const bool is_3x3 =
       matrix != nullptr && matrix->is_array() && matrix->size() == 3 &&
       std::all_of(matrix->begin(), matrix->end(), [](const json& row) {
@@ -218,7 +145,7 @@ const json* LensProfileIn(const json& root) {
   if (root.contains("fisheye_params")) {
     return &root;
   }
-  const json* data = Find(root, "calibration_data");
+  const json* data = FindField(root, "calibration_data");
   return data != nullptr && data->is_object() && data->contains("fisheye_params") ? data : nullptr;
 }
 
@@ -234,8 +161,8 @@ Result<CameraProfile> CameraFromJson(const json& root) {
           Quoted(key));
     }
   }
-  const Result<int> width = SizeAt(root, "width");
-  const Result<int> height = SizeAt(root, "height");
+  const Result<int> width = SizeField(root, "width");
+  const Result<int> height = SizeField(root, "height");
   if (!width || !height) {
     return Propagate(!width ? width.error() : height.error());
   }
@@ -245,21 +172,21 @@ Result<CameraProfile> CameraFromJson(const json& root) {
   const std::array<std::pair<const char*, double*>, 4> lengths = {
       {{"fx", &camera.fx}, {"fy", &camera.fy}, {"cx", &camera.cx}, {"cy", &camera.cy}}};
   for (const auto& [key, target] : lengths) {
-    const Result<std::optional<double>> value = NumberAt(root, key);
+    const Result<std::optional<double>> value = NumberField(root, key);
     if (!value) {
       return Propagate(value.error());
     }
     *target = value->value_or(*target);
   }
-  const bool has_fx = Find(root, "fx") != nullptr;
-  const bool has_fy = Find(root, "fy") != nullptr;
+  const bool has_fx = FindField(root, "fx") != nullptr;
+  const bool has_fy = FindField(root, "fy") != nullptr;
   profile.focal_is_known = has_fx || has_fy;
   if (has_fx != has_fy) {
     camera.fx = camera.fy = has_fx ? camera.fx : camera.fy;
   }
-  const Result<std::optional<double>> readout_s = NumberAt(root, "readout_s");
-  const Result<std::string> model_name = TextAt(root, "model");
-  Result<std::vector<double>> distortion = NumbersAt(root, "distortion");
+  const Result<std::optional<double>> readout_s = NumberField(root, "readout_s");
+  const Result<std::string> model_name = TextField(root, "model");
+  Result<std::vector<double>> distortion = NumbersField(root, "distortion");
   if (!readout_s || !model_name || !distortion) {
     return Propagate(!readout_s    ? readout_s.error()
                      : !model_name ? model_name.error()
@@ -280,17 +207,17 @@ Result<CameraProfile> CameraFromLensProfile(const json& root) {
   if (!fisheye.is_object()) {
     return Fail(ErrorCode::kCorruptData, "\"fisheye_params\" is not an object");
   }
-  const json* size = Find(root, "calib_dimension");
+  const json* size = FindField(root, "calib_dimension");
   if (size == nullptr || !size->is_object()) {
     return Fail(ErrorCode::kCorruptData, "\"calib_dimension\" (an object with w and h) is missing");
   }
-  const Result<int> width = SizeAt(*size, "w");
-  const Result<int> height = SizeAt(*size, "h");
+  const Result<int> width = SizeField(*size, "w");
+  const Result<int> height = SizeField(*size, "h");
   if (!width || !height) {
     return Propagate(!width ? width.error() : height.error(), "\"calib_dimension\"");
   }
-  const Result<std::string> model_name = TextAt(root, "distortion_model");
-  Result<std::vector<double>> coefficients = NumbersAt(fisheye, "distortion_coeffs");
+  const Result<std::string> model_name = TextField(root, "distortion_model");
+  Result<std::vector<double>> coefficients = NumbersField(fisheye, "distortion_coeffs");
   const Result<std::optional<double>> readout_s = ReadoutOf(root);
   if (!model_name || !coefficients || !readout_s) {
     return Propagate(!model_name     ? model_name.error()
@@ -324,11 +251,11 @@ Result<CameraProfile> CameraFromLensProfile(const json& root) {
 }  // namespace
 
 Result<CameraProfile> ParseCameraJson(std::string_view text) {
-  return ParseObject(text).and_then(CameraFromJson);
+  return ParseJsonObject(text).and_then(CameraFromJson);
 }
 
 Result<CameraProfile> ParseLensProfile(std::string_view text) {
-  return ParseObject(text).and_then([](const json& root) -> Result<CameraProfile> {
+  return ParseJsonObject(text).and_then([](const json& root) -> Result<CameraProfile> {
     const json* profile = LensProfileIn(root);
     if (profile == nullptr) {
       return Fail(ErrorCode::kCorruptData, "\"fisheye_params\" is missing");
@@ -380,7 +307,7 @@ Result<CameraProfile> ReadCameraProfile(const std::string& path) {
     return Propagate(text.error());
   }
   Result<CameraProfile> profile =
-      ParseObject(*text).and_then([](const json& root) -> Result<CameraProfile> {
+      ParseJsonObject(*text).and_then([](const json& root) -> Result<CameraProfile> {
         const json* lens = LensProfileIn(root);
         return lens != nullptr ? CameraFromLensProfile(*lens) : CameraFromJson(root);
       });

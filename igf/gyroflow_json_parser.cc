@@ -10,16 +10,17 @@
 #include <utility>
 #include <vector>
 
+#include "igf/json_fields_detail.h"
+
 namespace rsstab::igf {
 
 Result<GyroRecording> ParseGyroflowJson(std::string_view text, const GyroParseOptions& options) {
-  const nlohmann::json root = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!root.is_object()) {
-    return Fail(ErrorCode::kCorruptData,
-                "the .gyroflow file is not a whole JSON object; it may be cut off");
+  const Result<nlohmann::json> root = ParseJsonObject(text);
+  if (!root) {
+    return Propagate(root.error());
   }
-  const auto imu = root.find("raw_imu");
-  if (imu == root.end() || !imu->is_array()) {
+  const nlohmann::json* imu = FindField(*root, "raw_imu");
+  if (imu == nullptr || !imu->is_array()) {
     return Fail(ErrorCode::kUnsupported,
                 "the JSON file has no \"raw_imu\" rows; from the present Gyroflow, export the "
                 "motion data as .gcsv or CSV instead");
