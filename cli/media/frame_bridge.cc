@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cerrno>
+#include <cstring>
 #include <utility>
 
 #include "cli/media/av_error.h"
@@ -117,6 +118,30 @@ AvFramePtr KeptProperties(const AVFrame& picture) {
   if (properties == nullptr || !CopySideData(picture, *properties) ||
       properties->nb_side_data == 0) {
     return nullptr;
+  }
+  return properties;
+}
+
+AvFramePtr WithContainerHdr(AvFramePtr properties, const AVStream& stream) {
+  for (int i = 0; i < stream.nb_side_data; ++i) {
+    const AVPacketSideData& data = stream.side_data[i];
+    AVFrameSideDataType type{};
+    if (data.type == AV_PKT_DATA_MASTERING_DISPLAY_METADATA) {
+      type = AV_FRAME_DATA_MASTERING_DISPLAY_METADATA;
+    } else if (data.type == AV_PKT_DATA_CONTENT_LIGHT_LEVEL) {
+      type = AV_FRAME_DATA_CONTENT_LIGHT_LEVEL;
+    } else {
+      continue;
+    }
+    if (properties == nullptr) {
+      properties.reset(av_frame_alloc());
+    }
+    if (properties == nullptr || av_frame_get_side_data(properties.get(), type) != nullptr) {
+      continue;
+    }
+    if (AVFrameSideData* copy = av_frame_new_side_data(properties.get(), type, data.size)) {
+      std::memcpy(copy->data, data.data, data.size);
+    }
   }
   return properties;
 }

@@ -35,6 +35,10 @@ void SetOrigin(Frame& frame, FrameOrigin origin);
 // The properties a FrameOrigin keeps of a decoded picture; null if there are none.
 [[nodiscard]] AvFramePtr KeptProperties(const AVFrame& picture);
 
+// Adds what the container says about the light of the scene (HDR10) and the picture does not.
+// `properties` may be null and may stay so.
+[[nodiscard]] AvFramePtr WithContainerHdr(AvFramePtr properties, const AVStream& stream);
+
 }  // namespace rsstab::media
 
 #endif  // RSSTAB_CLI_MEDIA_FRAME_BRIDGE_H_

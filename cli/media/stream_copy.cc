@@ -127,7 +127,7 @@ int CopyVideoSideData(const AVStream& source, const AVFrame* first_frame_propert
       return code;
     }
   }
-  // Raw streams carry HDR10 data with the pictures only; the container has a place for it.
+  // Some files carry HDR10 data with the pictures only; the container has a place for it.
   const auto from_frame = [&](AVFrameSideDataType type, AVPacketSideDataType stream_type) {
     const AVFrameSideData* data = first_frame_properties != nullptr
                                       ? av_frame_get_side_data(first_frame_properties, type)

@@ -98,13 +98,7 @@ double RotationOf(const AVStream& stream) {
   return degrees <= -180.0 ? 180.0 : degrees;
 }
 
-bool HasHdrMetadata(const AVStream& stream, const AVFrame* properties) {
-  for (int i = 0; i < stream.nb_side_data; ++i) {
-    const AVPacketSideDataType type = stream.side_data[i].type;
-    if (type == AV_PKT_DATA_MASTERING_DISPLAY_METADATA || type == AV_PKT_DATA_CONTENT_LIGHT_LEVEL) {
-      return true;
-    }
-  }
+bool HasHdrMetadata(const AVFrame* properties) {
   return properties != nullptr &&
          (av_frame_get_side_data(properties, AV_FRAME_DATA_MASTERING_DISPLAY_METADATA) != nullptr ||
           av_frame_get_side_data(properties, AV_FRAME_DATA_CONTENT_LIGHT_LEVEL) != nullptr);
@@ -257,7 +251,7 @@ void VideoReader::Impl::Describe(const AVFrame& picture, const TimestampPlan& pl
     color.chroma_location = AVCHROMA_LOC_CENTER;  // JFIF
   }
   info.layout = LayoutOf(format, color.range, color.chroma_location).value_or(PixelLayout());
-  first_properties = KeptProperties(picture);
+  first_properties = WithContainerHdr(KeptProperties(picture), stream);
 
   info.container = input.iformat->name;
   info.codec = avcodec_get_name(parameters.codec_id);
@@ -271,7 +265,7 @@ void VideoReader::Impl::Describe(const AVFrame& picture, const TimestampPlan& pl
                                                          const_cast<AVFrame*>(&picture));
   info.sample_aspect_ratio = aspect.num > 0 && aspect.den > 0 ? ToRational(aspect) : Rational{1, 1};
   info.color = NamesOf(color);
-  info.has_hdr_metadata = HasHdrMetadata(stream, first_properties.get());
+  info.has_hdr_metadata = HasHdrMetadata(first_properties.get());
   CountStreams(input, info);
 
   const double tick_s = av_q2d(stream.time_base);
