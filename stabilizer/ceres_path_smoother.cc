@@ -31,7 +31,11 @@ constexpr double kZoomReluctance = 1.0 * kReferenceWidthPx;
 constexpr double kStretchReluctance = 10.0 * kReferenceWidthPx;
 // The same when a sensor knows the turn: the tracks' noise must not leak into the picture's shape.
 constexpr double kKnownRotationFactor = 20.0;
-constexpr double kCropWeight = 30.0;
+// The crop limit is a penalty on the corners that leave the picture, raised tenfold until none
+// leaves it by more than kMaxCropViolation.
+constexpr double kCropWeight = 10.0;
+constexpr int kMaxCropRaises = 4;
+constexpr double kMaxCropViolation = 0.5 / kReferenceWidthPx;
 constexpr double kTripodWeight = 300.0;
 // Local paths: highest mode, pull to the camera's own local path, neighbour term.
 constexpr int kMaxModeOrder = 5;
@@ -191,6 +195,30 @@ class CeresPathSmoother final : public PathSmoother {
   }
 
   Status SolveGlobal() {
+    double crop_weight = kCropWeight;
+    for (int i = 0; i <= kMaxCropRaises; ++i, crop_weight *= 10.0) {
+      if (Status ok = SolveGlobal(crop_weight); !ok || LargestCropViolation() < kMaxCropViolation) {
+        return ok;
+      }
+    }
+    return {};
+  }
+
+  // Normalised distance by which the crop window of an open frame leaves the picture.
+  [[nodiscard]] double LargestCropViolation() const {
+    const CropResidual crop{options_.focal_ratio, 1.0, options_.min_crop_ratio, options_.aspect};
+    double worst = 0.0;
+    for (std::size_t i = decided_; i < nodes_.size(); ++i) {
+      std::array<double, CropResidual::kSize> overhang{};
+      crop(nodes_[i].theta.data(), overhang.data());
+      for (const double d : overhang) {
+        worst = std::max(worst, std::abs(d) / kReferenceWidthPx);
+      }
+    }
+    return worst;
+  }
+
+  Status SolveGlobal(double crop_weight) {
     ceres::Problem problem;
     const double f = options_.focal_ratio;
     const double known = options_.rotation_known ? kKnownRotationFactor : 1.0;
@@ -215,7 +243,7 @@ class CeresPathSmoother final : public PathSmoother {
           nullptr, nodes_[i].theta.data());
       problem.AddResidualBlock(
           new ceres::AutoDiffCostFunction<CropResidual, CropResidual::kSize, kUpdateSize>(
-              new CropResidual{f, kCropWeight, options_.min_crop_ratio, options_.aspect}),
+              new CropResidual{f, crop_weight, options_.min_crop_ratio, options_.aspect}),
           nullptr, nodes_[i].theta.data());
       if (options_.tripod && i >= 1) {
         problem.AddResidualBlock(

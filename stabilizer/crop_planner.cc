@@ -13,13 +13,16 @@ constexpr int kBisections = 13;  // 0.9 / 2^13: a tenth of a pixel at 1080p
 // Room for what happens between the points of the outline and for float rounding of the map.
 constexpr double kMarginPx = 0.25;
 
-bool OutlineIsCovered(const FrameWarp& warp, double crop_ratio) {
+// A frame that is left alone needs no room.
+constexpr double kRoundOffPx = 1e-6;
+
+bool OutlineIsCovered(const FrameWarp& warp, double crop_ratio, double margin_px) {
   const double cx = (warp.width - 1) / 2.0;
   const double cy = (warp.height - 1) / 2.0;
   const double half_x = cx * crop_ratio;
   const double half_y = cy * crop_ratio;
-  const double margin_x = std::min(kMarginPx, cx);
-  const double margin_y = std::min(kMarginPx, cy);
+  const double margin_x = std::min(margin_px, cx);
+  const double margin_y = std::min(margin_px, cy);
   const auto covered = [&](double x, double y) {
     const auto source = SourcePosition(warp, {cx + x, cy + y});
     return source && source->x() >= margin_x && source->x() <= warp.width - 1 - margin_x &&
@@ -49,14 +52,14 @@ FrameWarp WithCrop(FrameWarp warp, double crop_ratio) {
 }
 
 double LargestCropRatio(const FrameWarp& warp) {
-  if (OutlineIsCovered(warp, 1.0)) {
+  if (OutlineIsCovered(warp, 1.0, -kRoundOffPx)) {
     return 1.0;
   }
   double low = kMinCropRatio;
   double high = 1.0;
   for (int i = 0; i < kBisections; ++i) {
     const double middle = 0.5 * (low + high);
-    (OutlineIsCovered(warp, middle) ? low : high) = middle;
+    (OutlineIsCovered(warp, middle, kMarginPx) ? low : high) = middle;
   }
   return low;
 }

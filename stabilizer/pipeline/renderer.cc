@@ -21,6 +21,8 @@ constexpr double kMaxFingerprintDistance = 4.0;
 // Steps of a thousandth until the composed map covers the picture; see Compose().
 constexpr int kMaxCropSteps = 100;
 constexpr double kCropStep = 0.999;
+// Rounding of the map to float; a source this far beyond the last pixel centre is that pixel.
+constexpr double kRoundOffPx = 1e-3;
 
 }  // namespace
 
@@ -49,11 +51,11 @@ struct Renderer::Impl {
     double crop = options.zoom == ZoomMode::kFixed ? clip.smallest_crop_ratio : frame.crop_ratio;
     stabilizer::BackwardMap map =
         stabilizer::ComposeBackwardMap(stabilizer::WithCrop(warp, crop), grid);
-    for (int step = 0; step < kMaxCropSteps && stabilizer::OverhangPx(map) > 0.0; ++step) {
+    for (int step = 0; step < kMaxCropSteps && stabilizer::OverhangPx(map) > kRoundOffPx; ++step) {
       crop *= kCropStep;
       map = stabilizer::ComposeBackwardMap(stabilizer::WithCrop(warp, crop), grid);
     }
-    if (stabilizer::OverhangPx(map) > 0.0) {
+    if (stabilizer::OverhangPx(map) > kRoundOffPx) {
       // No window of this warp is inside the picture: leave the frame as it was recorded.
       return {clip.width, clip.height, grid.columns, grid.rows};
     }

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stabilizer/analysis_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "tests/support/test_paths.h"
+
+namespace rsstab::stabilizer {
+namespace {
+
+constexpr int kFrames = 5;
+
+FrameAnalysis SomeFrame(int i) {
+  FrameAnalysis frame;
+  frame.pts = 1001 * i;
+  frame.fingerprint.fill(static_cast<std::uint8_t>(10 * i));
+  frame.rung = MotionRung::kMesh;
+  frame.path_begins = i == 0;
+  frame.crop_ratio = 0.95 - 0.01 * i;
+  frame.rectified_from_output(0, 2) = 0.01 * i;
+  if (i % 2 == 1) {
+    frame.mesh_update = MotionField(640, 360, 17, 17);
+    frame.mesh_update.At(3, 4) = {1.5F, -2.25F};
+    frame.rs_field = MotionField(640, 360, 9, 33);
+    frame.rs_field.At(8, 32) = {-12.5F, 0.125F};
+  }
+  return frame;
+}
+
+ClipAnalysis SomeClip() {
+  ClipAnalysis clip;
+  clip.program_version = "1.2.3";
+  clip.width = 640;
+  clip.height = 360;
+  clip.frames_per_second = 29.97;
+  clip.rs_source = "gyro";
+  clip.rs_reason = "a log\nwith \"quotes\"";
+  clip.readout_s = -0.02;
+  clip.gyro_offset_s = 0.125;
+  clip.camera = Camera::Pinhole(640, 360, 500.0);
+  clip.options = "--smoothness 1";
+  return clip;
+}
+
+std::filesystem::path WriteSample(const testing::TemporaryFolder& folder) {
+  const auto path = folder / "clip.rsa";
+  auto writer = AnalysisWriter::Create(path.string());
+  EXPECT_TRUE(writer);
+  for (int i = 0; i < kFrames; ++i) {
+    EXPECT_TRUE((*writer)->Append(SomeFrame(i)));
+  }
+  EXPECT_TRUE((*writer)->Finish(SomeClip()));
+  return path;
+}
+
+std::string ReadAll(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(AnalysisFile, RoundTrip) {
+  const testing::TemporaryFolder folder;
+  auto reader = AnalysisReader::Open(WriteSample(folder).string());
+  ASSERT_TRUE(reader) << reader.error().message;
+  const ClipAnalysis& clip = (*reader)->clip();
+  EXPECT_EQ(clip.num_frames, kFrames);
+  EXPECT_NEAR(clip.smallest_crop_ratio, 0.91, 1e-6);
+  EXPECT_EQ(clip.rs_reason, SomeClip().rs_reason);
+  EXPECT_EQ(clip.gyro_offset_s, 0.125);
+  EXPECT_EQ(clip.camera->fx, 500.0);
+  for (int i = 0; i < kFrames; ++i) {
+    auto frame = (*reader)->Next();
+    ASSERT_TRUE(frame && *frame);
+    const FrameAnalysis expected = SomeFrame(i);
+    EXPECT_EQ((*frame)->pts, expected.pts);
+    EXPECT_EQ((*frame)->fingerprint, expected.fingerprint);
+    EXPECT_EQ((*frame)->path_begins, expected.path_begins);
+    EXPECT_EQ((*frame)->rectified_from_output, expected.rectified_from_output);
+    EXPECT_EQ((*frame)->mesh_update.columns(), expected.mesh_update.columns());
+    if (i % 2 == 1) {
+      EXPECT_NEAR((*frame)->mesh_update.At(3, 4).y(), -2.25F, 1e-4F);
+      EXPECT_NEAR((*frame)->rs_field.At(8, 32).x(), -12.5F, 1e-3F);
+      EXPECT_EQ((*frame)->rs_field.reference_row(), 179.5);
+    }
+  }
+  const auto end = (*reader)->Next();
+  ASSERT_TRUE(end);
+  EXPECT_FALSE(*end);
+}
+
+TEST(AnalysisFile, NothingIsLeftWithoutFinish) {
+  const testing::TemporaryFolder folder;
+  {
+    auto writer = AnalysisWriter::Create((folder / "x.rsa").string());
+    ASSERT_TRUE(writer);
+    ASSERT_TRUE((*writer)->Append(SomeFrame(0)));
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(AnalysisFile, EveryFlippedByteIsNoticed) {
+  const testing::TemporaryFolder folder;
+  const std::string good = ReadAll(WriteSample(folder));
+  const auto damaged_path = folder / "damaged.rsa";
+  for (std::size_t i = 0; i < good.size(); i += 7) {
+    std::string bytes = good;
+    bytes[i] = static_cast<char>(bytes[i] ^ 0x41);
+    std::ofstream(damaged_path, std::ios::binary) << bytes;
+    auto reader = AnalysisReader::Open(damaged_path.string());
+    bool noticed = !reader;
+    for (int k = 0; reader && !noticed && k < kFrames; ++k) {
+      noticed = !(*reader)->Next();
+    }
+    EXPECT_TRUE(noticed) << "byte " << i;
+  }
+}
+
+TEST(AnalysisFile, EveryLengthIsHandled) {
+  const testing::TemporaryFolder folder;
+  const std::string good = ReadAll(WriteSample(folder));
+  const auto cut_path = folder / "cut.rsa";
+  for (std::size_t size = 0; size < good.size(); size += 13) {
+    std::ofstream(cut_path, std::ios::binary) << good.substr(0, size);
+    EXPECT_FALSE(AnalysisReader::Open(cut_path.string())) << size;
+  }
+}
+
+TEST(AnalysisFile, SaysWhatIsWrong) {
+  const testing::TemporaryFolder folder;
+  EXPECT_THAT(AnalysisReader::Open("/nowhere/x.rsa").error().message,
+              ::testing::HasSubstr("no analysis file"));
+  std::ofstream(folder / "text.rsa") << "this is a text file, and not a short one either";
+  EXPECT_THAT(AnalysisReader::Open((folder / "text.rsa").string()).error().message,
+              ::testing::HasSubstr("is not an analysis file"));
+  std::string newer = ReadAll(WriteSample(folder));
+  newer[8] = 99;
+  std::ofstream(folder / "newer.rsa", std::ios::binary) << newer;
+  EXPECT_EQ(AnalysisReader::Open((folder / "newer.rsa").string()).error().code,
+            ErrorCode::kUnsupported);
+}
+
+}  // namespace
+}  // namespace rsstab::stabilizer
