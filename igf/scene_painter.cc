@@ -28,8 +28,8 @@ Color Mix(const Color& a, const Color& b, double share_of_b) {
 
 class StreetPainter {
  public:
-  StreetPainter(int width, std::uint64_t seed)
-      : seed_(seed), unit_(width / kPaintedWidthTan), image_(width / 2, width, CV_8UC3) {}
+  StreetPainter(int width, int height, std::uint64_t seed)
+      : seed_(seed), unit_(width / kPaintedWidthTan), image_(height, width, CV_8UC3) {}
 
   cv::Mat Paint() {
     PaintSky();
@@ -44,7 +44,7 @@ class StreetPainter {
 
  private:
   [[nodiscard]] double PixelX(double x) const { return (x - kLeft) * unit_; }
-  [[nodiscard]] double PixelY(double y) const { return (y + 1.0) * unit_; }
+  [[nodiscard]] double PixelY(double y) const { return y * unit_ + image_.rows / 2.0; }
   [[nodiscard]] cv::Point Fixed(double x, double y) const {
     return {static_cast<int>(std::lround((PixelX(x) - 0.5) * (1 << kShift))),
             static_cast<int>(std::lround((PixelY(y) - 0.5) * (1 << kShift)))};
@@ -64,8 +64,11 @@ class StreetPainter {
 
   // Smooth noise in -1..1: random numbers on a lattice of `cells_per_unit`, cubic in between.
   [[nodiscard]] cv::Mat SmoothNoise(double cells_per_unit, std::uint64_t stream) const {
-    const int columns = std::max(2, static_cast<int>(std::lround(cells_per_unit * 4.0)));
-    const int rows = std::max(2, static_cast<int>(std::lround(cells_per_unit * 2.0)));
+    const auto cells = [&](int pixels) {
+      return std::max(2, static_cast<int>(std::lround(cells_per_unit * pixels / unit_)));
+    };
+    const int columns = cells(image_.cols);
+    const int rows = cells(image_.rows);
     cv::Mat lattice(rows, columns, CV_32F);
     SeededRandom random(seed_, stream);
     for (int y = 0; y < rows; ++y) {
@@ -101,7 +104,7 @@ void StreetPainter::PaintSky() {
   cv::Mat cover = SmoothNoise(3.0, 1);
   cover += 0.6 * SmoothNoise(7.0, 2) + 0.35 * SmoothNoise(17.0, 3) + 0.2 * SmoothNoise(41.0, 4);
   for (int y = 0; y < image_.rows; ++y) {
-    const double height = std::clamp((kGround - (y / unit_ - 1.0)) / 0.9, 0.0, 1.0);
+    const double height = std::clamp((kGround - ((y - image_.rows / 2.0) / unit_)) / 0.9, 0.0, 1.0);
     const Color clear = Mix(haze, zenith, std::sqrt(height));
     const auto* noise = cover.ptr<float>(y);
     auto* row = image_.ptr<cv::Vec3b>(y);
@@ -415,14 +418,17 @@ void StreetPainter::AddGrain() {
 
 }  // namespace
 
-Result<RgbPicture> PaintStreet(int width, std::uint64_t seed) {
+Result<RgbPicture> PaintStreet(int width, int height, std::uint64_t seed) {
   constexpr int kNarrowest = 256;
   constexpr int kWidest = 32768;
-  if (width < kNarrowest || width > kWidest) {
-    return Fail(ErrorCode::kInvalidArgument, "A painted scene is {} to {} pixels wide, not {}.",
-                kNarrowest, kWidest, width);
+  constexpr int kLowest = 64;
+  if (width < kNarrowest || width > kWidest || height < kLowest || height > width / 2) {
+    return Fail(ErrorCode::kInvalidArgument,
+                "A painted scene is {} to {} pixels wide and {} to half its width high, not {} x "
+                "{}.",
+                kNarrowest, kWidest, kLowest, width, height);
   }
-  const cv::Mat image = StreetPainter(width, seed).Paint();
+  const cv::Mat image = StreetPainter(width, height, seed).Paint();
   RgbPicture picture;
   picture.width = image.cols;
   picture.height = image.rows;

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "igf/simulation_truth.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
 #include <utility>
+
+#include "igf/camera_profile_reader.h"
+#include "igf/whole_file.h"
 
 namespace rsstab::igf {
 namespace {
@@ -17,14 +20,6 @@ using nlohmann::json;
 constexpr std::string_view kFormat = "rs-stabilize truth";
 constexpr int kVersion = 1;
 
-struct LensName {
-  LensModel model;
-  std::string_view name;
-};
-constexpr std::array<LensName, 3> kLensNames = {{{LensModel::kPinhole, "pinhole"},
-                                                 {LensModel::kFisheye, "fisheye"},
-                                                 {LensModel::kBrown, "brown"}}};
-
 json QuaternionToJson(const Eigen::Quaterniond& q) {
   return json::array({q.x(), q.y(), q.z(), q.w()});
 }
@@ -32,40 +27,6 @@ json QuaternionToJson(const Eigen::Quaterniond& q) {
 Eigen::Quaterniond QuaternionFromJson(const json& value) {
   return {value.at(3).get<double>(), value.at(0).get<double>(), value.at(1).get<double>(),
           value.at(2).get<double>()};
-}
-
-json CameraToJson(const Camera& camera) {
-  json result = {{"width", camera.width}, {"height", camera.height}, {"fx", camera.fx},
-                 {"fy", camera.fy},       {"cx", camera.cx},         {"cy", camera.cy}};
-  for (const LensName& lens : kLensNames) {
-    if (lens.model == camera.model) {
-      result["model"] = lens.name;
-    }
-  }
-  result["distortion"] = camera.distortion;
-  if (camera.readout_s) {
-    result["readout_s"] = *camera.readout_s;
-  }
-  return result;
-}
-
-Camera CameraFromJson(const json& value) {
-  Camera camera;
-  camera.width = value.at("width").get<int>();
-  camera.height = value.at("height").get<int>();
-  camera.fx = value.at("fx").get<double>();
-  camera.fy = value.at("fy").get<double>();
-  camera.cx = value.at("cx").get<double>();
-  camera.cy = value.at("cy").get<double>();
-  const auto model = value.at("model").get<std::string>();
-  for (const LensName& lens : kLensNames) {
-    if (lens.name == model) {
-      camera.model = lens.model;
-    }
-  }
-  camera.distortion = value.at("distortion").get<std::vector<double>>();
-  camera.readout_s = value.at("readout_s").get<double>();
-  return camera;
 }
 
 // Indices [first, last] of the samples that hold [begin_s, end_s] between them.
@@ -84,8 +45,6 @@ std::pair<std::size_t, std::size_t> SamplesAround(const OrientationTrack& track,
 
 }  // namespace
 
-std::string FormatCameraJson(const Camera& camera) { return CameraToJson(camera).dump(2) + "\n"; }
-
 Result<std::string> FormatSimulationTruth(const SimulationTruth& truth, double margin_s) {
   const OrientationTrack& track = truth.orientation;
   const double readout_s = truth.camera.readout_s.value_or(0.0);
@@ -100,7 +59,7 @@ Result<std::string> FormatSimulationTruth(const SimulationTruth& truth, double m
   camera.readout_s = readout_s;
   json document = {{"format", kFormat},
                    {"version", kVersion},
-                   {"camera", CameraToJson(camera)},
+                   {"camera", json::parse(FormatCameraJson(camera))},
                    {"exposure_s", truth.exposure_s},
                    {"gyro_offset_s", truth.gyro_offset_s}};
   json& frames = document["frames"] = json::array();
@@ -139,6 +98,10 @@ Result<SimulationTruth> ParseSimulationTruth(const std::string& text) {
                   "simulate`.",
                   kVersion);
     }
+    const Result<CameraProfile> profile = ParseCameraJson(document.at("camera").dump());
+    if (!profile) {
+      return Propagate(profile.error(), "The truth file's camera");
+    }
     const json& orientation = document.at("orientation");
     std::vector<Eigen::Quaterniond> samples;
     for (const json& value : orientation.at("world_from_camera")) {
@@ -150,14 +113,11 @@ Result<SimulationTruth> ParseSimulationTruth(const std::string& text) {
       return Fail(ErrorCode::kCorruptData, "The truth file's orientation: {}",
                   track.error().message);
     }
-    SimulationTruth truth{CameraFromJson(document.at("camera")),
+    SimulationTruth truth{profile->camera,
                           document.at("exposure_s").get<double>(),
                           document.at("gyro_offset_s").get<double>(),
                           {},
                           *std::move(track)};
-    if (Status status = truth.camera.Validate(); !status) {
-      return Fail(ErrorCode::kCorruptData, "The truth file's camera: {}", status.error().message);
-    }
     for (const json& frame : document.at("frames")) {
       truth.frame_times_s.push_back(frame.at("time_s").get<double>());
     }
@@ -167,6 +127,19 @@ Result<SimulationTruth> ParseSimulationTruth(const std::string& text) {
                 "The truth file cannot be read ({}); make it anew with `rs-stabilize simulate`.",
                 error.what());
   }
+}
+
+Result<SimulationTruth> ReadSimulationTruth(const std::string& path) {
+  constexpr std::uint64_t kMaxBytes = 1ULL << 30U;
+  const Result<std::string> text = ReadWholeFile(path, kMaxBytes);
+  if (!text) {
+    return Propagate(text.error());
+  }
+  Result<SimulationTruth> truth = ParseSimulationTruth(*text);
+  if (!truth) {
+    return Propagate(truth.error(), path);
+  }
+  return truth;
 }
 
 }  // namespace rsstab::igf

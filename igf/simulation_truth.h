@@ -22,7 +22,7 @@ struct SimulationTruth {
 
 // JSON text:
 //   "format": "rs-stabilize truth", "version": 1,
-//   "camera": {"width", "height", "fx", "fy", "cx", "cy", "readout_s", "model", "distortion"},
+//   "camera": a camera JSON, see camera_profile_reader.h; readout_s is always there,
 //   "exposure_s", "gyro_offset_s": numbers,
 //   "frames": [{"index", "time_s", "world_from_camera": [x, y, z, w]}, ..]  (of the middle row)
 //   "orientation": {"times_s": [..], "world_from_camera": [[x, y, z, w], ..]}
@@ -38,8 +38,8 @@ struct SimulationTruth {
 // Reads that text. Errors: kCorruptData naming what is missing or wrong.
 [[nodiscard]] Result<SimulationTruth> ParseSimulationTruth(const std::string& text);
 
-// The camera as design-conformant JSON text, alone: what --camera reads.
-[[nodiscard]] std::string FormatCameraJson(const Camera& camera);
+// The same from a file. Every error names it. Errors: kNotFound, kIo, and the above.
+[[nodiscard]] Result<SimulationTruth> ReadSimulationTruth(const std::string& path);
 
 }  // namespace rsstab::igf
 

@@ -74,24 +74,31 @@ cv::Mat BlurTowardsCorners(const cv::Mat& image, double focal) {
   const int width = image.cols;
   const int height = image.rows;
   std::vector<BlurKernel> across(static_cast<std::size_t>(width));
-  std::vector<BlurKernel> down(static_cast<std::size_t>(width));
+  // Stored tap by tap, so that the pass down the columns runs along the rows.
+  cv::Mat down(kBlurTaps, width, CV_32F);
   for (int x = 0; x < width; ++x) {
     const double u = (x + 0.5 - width / 2.0) / focal;
     const double a = u - 2.0 * std::round(u / 2.0);
     const double density = kTexelsPerPixel * (1.0 + a * a);
     across[static_cast<std::size_t>(x)] = GaussianKernel(MissingBlur(density));
-    down[static_cast<std::size_t>(x)] =
-        GaussianKernel(MissingBlur(kTexelsPerPixel * std::sqrt(1.0 + a * a)));
+    const BlurKernel column = GaussianKernel(MissingBlur(kTexelsPerPixel * std::sqrt(1.0 + a * a)));
+    for (int k = 0; k < kBlurTaps; ++k) {
+      down.at<float>(k, x) = column[static_cast<std::size_t>(k)];
+    }
   }
   cv::Mat rows_done(height, width, CV_32F);
+  std::vector<float> padded(static_cast<std::size_t>(width + 2 * kBlurReach));
   for (int y = 0; y < height; ++y) {
     const auto* in = image.ptr<float>(y);
+    for (int x = 0; x < width + 2 * kBlurReach; ++x) {
+      padded[static_cast<std::size_t>(x)] = in[FoldIndex(x - kBlurReach, width)];
+    }
     auto* out = rows_done.ptr<float>(y);
     for (int x = 0; x < width; ++x) {
       const BlurKernel& kernel = across[static_cast<std::size_t>(x)];
       float sum = 0.0F;
       for (int k = 0; k < kBlurTaps; ++k) {
-        sum += kernel[static_cast<std::size_t>(k)] * in[FoldIndex(x + k - kBlurReach, width)];
+        sum += kernel[static_cast<std::size_t>(k)] * padded[static_cast<std::size_t>(x + k)];
       }
       out[x] = sum;
     }
@@ -101,12 +108,32 @@ cv::Mat BlurTowardsCorners(const cv::Mat& image, double focal) {
     auto* out = result.ptr<float>(y);
     for (int k = 0; k < kBlurTaps; ++k) {
       const auto* in = rows_done.ptr<float>(FoldIndex(y + k - kBlurReach, height));
+      const auto* weight = down.ptr<float>(k);
       for (int x = 0; x < width; ++x) {
-        out[x] += down[static_cast<std::size_t>(x)][static_cast<std::size_t>(k)] * in[x];
+        out[x] += weight[x] * in[x];
       }
     }
   }
   return result;
+}
+
+// One plane of the picture, full range, unit scale; BT.709.
+cv::Mat PlaneOf(const RgbPicture& picture, std::size_t plane) {
+  constexpr std::array<std::array<float, 3>, 3> kYccFromRgb = {{{0.2126F, 0.7152F, 0.0722F},
+                                                                {-0.114572F, -0.385428F, 0.5F},
+                                                                {0.5F, -0.454153F, -0.045847F}}};
+  const std::array<float, 3>& weights = kYccFromRgb[plane];
+  cv::Mat image(picture.height, picture.width, CV_32F);
+  const std::uint8_t* rgb = picture.pixels.data();
+  for (int y = 0; y < picture.height; ++y) {
+    auto* row = image.ptr<float>(y);
+    for (int x = 0; x < picture.width; ++x, rgb += 3) {
+      row[x] = (weights[0] * static_cast<float>(rgb[0]) + weights[1] * static_cast<float>(rgb[1]) +
+                weights[2] * static_cast<float>(rgb[2])) /
+               255.0F;
+    }
+  }
+  return image;
 }
 
 // Position of a direction on the unrolled walls, units of tangent: x = 0 straight ahead, growing to
@@ -177,19 +204,9 @@ Result<TextureScene> TextureScene::FromPicture(const RgbPicture& picture, double
                 view_focal_px, width, height);
   }
 
-  // OpenCV wants a mutable pointer for a header it only reads from.
-  const cv::Mat rgb(picture.height, picture.width, CV_8UC3,
-                    const_cast<std::uint8_t*>(picture.pixels.data()));  // NOLINT
-  // BT.709, full range: Y, Cb, Cr as rows over (R, G, B).
-  constexpr float kScale = 1.0F / 255.0F;
-  const cv::Matx33f ycc_from_rgb(0.2126F, 0.7152F, 0.0722F,     //
-                                 -0.114572F, -0.385428F, 0.5F,  //
-                                 0.5F, -0.454153F, -0.045847F);
   TextureScene scene;
   for (int p = 0; p < 3; ++p) {
-    cv::Mat image;
-    rgb.convertTo(image, CV_32F, kScale);
-    cv::transform(image, image, cv::Mat(ycc_from_rgb.row(p)));
+    const cv::Mat image = PlaneOf(picture, static_cast<std::size_t>(p));
     const int reduction = p == 0 ? 1 : kChromaReduction;
     Plane& plane = scene.planes_[static_cast<std::size_t>(p)];
     plane.width = static_cast<int>(width) / reduction;

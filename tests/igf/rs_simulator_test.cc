@@ -36,7 +36,7 @@ OrientationTrack SteadyTurn(const Eigen::Vector3d& rate) {
 
 std::shared_ptr<const TextureScene> Street() {
   return std::make_shared<TextureScene>(
-      *TextureScene::FromPicture(*PaintStreet(1024, 1), kPaintedWidthTan, kFocalPx));
+      *TextureScene::FromPicture(*PaintStreet(1024, 512, 1), kPaintedWidthTan, kFocalPx));
 }
 
 // A picture of two crossed waves with a known value in every direction of the wall ahead: the

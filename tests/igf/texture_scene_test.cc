@@ -77,7 +77,7 @@ TEST(TextureScene, IsTheSplineOfItsTexels) {
 }
 
 TEST(TextureScene, IsContinuousAllRoundAndBeyondThePicture) {
-  const auto street = PaintStreet(512, 3);
+  const auto street = PaintStreet(512, 256, 3);
   ASSERT_TRUE(street) << street.error().message;
   for (const double width_tan : {4.0, 2.0, 1.3}) {
     const auto scene = TextureScene::FromPicture(*street, width_tan, 100.0);
@@ -104,7 +104,7 @@ TEST(TextureScene, IsContinuousAllRoundAndBeyondThePicture) {
 }
 
 TEST(TextureScene, LineAndListOfDirectionsAgree) {
-  const auto street = PaintStreet(512, 3);
+  const auto street = PaintStreet(512, 256, 3);
   ASSERT_TRUE(street);
   const auto scene = TextureScene::FromPicture(*street, kPaintedWidthTan, 100.0);
   ASSERT_TRUE(scene);
@@ -159,16 +159,16 @@ TEST(TextureScene, StraightUpIsSafe) {
 }
 
 TEST(ScenePainter, SameSeedSamePictureOtherSeedAnother) {
-  const auto a = PaintStreet(256, 1);
-  const auto b = PaintStreet(256, 1);
-  const auto c = PaintStreet(256, 2);
+  const auto a = PaintStreet(256, 128, 1);
+  const auto b = PaintStreet(256, 128, 1);
+  const auto c = PaintStreet(256, 128, 2);
   ASSERT_TRUE(a && b && c);
   EXPECT_EQ(a->width, 256);
   EXPECT_EQ(a->height, 128);
   EXPECT_EQ(a->pixels, b->pixels);
   EXPECT_NE(a->pixels, c->pixels);
-  EXPECT_FALSE(PaintStreet(255, 1));
-  EXPECT_FALSE(PaintStreet(100000, 1));
+  EXPECT_FALSE(PaintStreet(255, 100, 1));
+  EXPECT_FALSE(PaintStreet(1000, 501, 1));
 }
 
 }  // namespace

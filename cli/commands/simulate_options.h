@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef RSSTAB_CLI_COMMANDS_SIMULATE_OPTIONS_H_
+#define RSSTAB_CLI_COMMANDS_SIMULATE_OPTIONS_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "igf/motion_presets.h"
+#include "stabilizer/pipeline/option_table.h"
+
+namespace rsstab::cli {
+
+// What `rs-stabilize simulate` is told. Defaults are the member initialisers.
+struct SimulateOptions {
+  std::string output;  // folder for rs.mp4, gs.mp4, gyro.csv, camera.json, truth.json
+  std::string image;   // still picture that becomes the scene; empty: a painted street
+  igf::MotionPreset motion = igf::MotionPreset::kHandheld;
+  std::string motion_gyro;  // gyro log whose motion is used instead of a preset
+  std::int64_t seed = 1;
+
+  int width = 1280;
+  int height = 720;
+  double fps = 30.0;
+  std::optional<double> duration_s;  // 10 s, or less where the gyro log is shorter
+  std::optional<double> readout_s;   // what goes with the preset; 20 ms for a gyro log
+  double fov_deg = 60.0;             // horizontal angle of view
+  std::optional<double> focal_px;    // overrides fov_deg
+
+  double gyro_rate_hz = 1000.0;
+  double gyro_offset_s = 0.0;     // t_video = t_gyro + offset
+  double gyro_noise_rad_s = 0.0;  // standard deviation per axis and sample
+  double gyro_bias_rad_s = 0.0;   // length of a bias whose direction the seed draws
+
+  bool foreground = false;   // a moving object
+  double exposure_s = 0.0;   // motion blur
+  double image_noise = 0.0;  // 8-bit levels
+
+  double crf = 8.0;  // of x264; 0 = lossless
+  bool overwrite = false;
+  int threads = 0;  // 0 = one per core
+};
+
+// All options but `output`, which is the command's positional argument.
+[[nodiscard]] const pipeline::OptionTable<SimulateOptions>& SimulateOptionTable();
+
+}  // namespace rsstab::cli
+
+#endif  // RSSTAB_CLI_COMMANDS_SIMULATE_OPTIONS_H_
