@@ -39,6 +39,15 @@ struct GpmfDevice {
   double scale_missing = 0.0;       // gyro samples that had to be dropped for want of SCAL
 };
 
+// The stream (STRM) being read; its properties precede its data.
+struct GpmfOpenStream {
+  GpmfGyroPacket packet;
+  std::vector<double> scale;
+  std::string type_definition;
+  double unit_factor = 1.0;  // to rad/s
+  std::vector<double> readouts_ms;
+};
+
 // Collects the gyro and the readout time of every device of a sequence of payloads. The bytes are
 // walked in one pass without recursion, so nesting cannot exhaust the stack.
 class GpmfStreamCollector {
@@ -51,15 +60,6 @@ class GpmfStreamCollector {
   [[nodiscard]] std::size_t damaged_items() const { return damaged_items_; }
 
  private:
-  // The stream (STRM) being read; its properties precede its data.
-  struct Stream {
-    GpmfGyroPacket packet;
-    std::vector<double> scale;
-    std::string type_definition;
-    double unit_factor = 1.0;  // to rad/s
-    std::vector<double> readouts_ms;
-  };
-
   void Visit(const KlvItem& item);
   void VisitStreamItem(const KlvItem& item);
   void ReadGyro(const KlvItem& item);
@@ -72,7 +72,7 @@ class GpmfStreamCollector {
 
   std::size_t payload_ = 0;
   std::optional<GpmfDevice> device_;
-  std::optional<Stream> stream_;
+  std::optional<GpmfOpenStream> stream_;
 };
 
 }  // namespace rsstab::igf
