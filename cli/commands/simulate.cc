@@ -165,8 +165,8 @@ igf::GyroSimulatorOptions GyroOptionsFrom(const SimulateOptions& options) {
   return gyro;
 }
 
-igf::RsSimulatorOptions SimulatorOptionsFrom(const SimulateOptions& options, double readout_s,
-                                             double duration_s) {
+igf::RsSimulatorOptions SimulatorOptionsFrom(const SimulateOptions& options, double focal_px,
+                                             double readout_s, double duration_s) {
   igf::RsSimulatorOptions result;
   result.readout_s = readout_s;
   result.exposure_s = options.exposure_s;
@@ -174,8 +174,9 @@ igf::RsSimulatorOptions SimulatorOptionsFrom(const SimulateOptions& options, dou
   result.noise_sigma = options.image_noise;
   result.noise_seed = static_cast<std::uint64_t>(options.seed);
   if (options.foreground) {
-    // Crosses the place straight ahead at half time.
+    // Crosses the view once, and the place straight ahead at half time.
     igf::ForegroundObject object;
+    object.rate_rad_s = 2.0 * std::atan(options.width / 2.0 / focal_px) / duration_s;
     object.azimuth_rad = -object.rate_rad_s * duration_s / 2.0;
     object.seed = static_cast<std::uint64_t>(options.seed);
     result.foreground = object;
@@ -275,7 +276,7 @@ Result<Simulation> PrepareSimulation(const SimulateOptions& options, const Logge
   }
   auto simulator = igf::RsSimulator::Create(
       std::make_shared<const igf::TextureScene>(*std::move(scene)), camera, motion->orientation,
-      SimulatorOptionsFrom(options, *camera.readout_s, motion->duration_s));
+      SimulatorOptionsFrom(options, focal_px, *camera.readout_s, motion->duration_s));
   if (!simulator) {
     return Propagate(simulator.error());
   }
