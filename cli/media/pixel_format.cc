@@ -95,6 +95,49 @@ bool ReadPlanes(const AVPixFmtDescriptor& format, int bytes_per_sample, PixelLay
   return layout.channels[0] == 1;
 }
 
+struct FormatTraits {
+  bool is_gray = false;
+  bool is_rgb = false;
+  bool has_alpha = false;
+  bool is_planar = false;
+  int depth = 0;
+};
+
+FormatTraits TraitsOf(const AVPixFmtDescriptor& format) {
+  FormatTraits traits;
+  const bool is_palette = (format.flags & AV_PIX_FMT_FLAG_PAL) != 0;
+  traits.is_rgb = (format.flags & AV_PIX_FMT_FLAG_RGB) != 0 || is_palette;
+  traits.is_gray = !traits.is_rgb && format.nb_components <= 2;
+  traits.has_alpha = (format.flags & AV_PIX_FMT_FLAG_ALPHA) != 0;
+  traits.is_planar = (format.flags & AV_PIX_FMT_FLAG_PLANAR) != 0 && format.comp[1].step <= 2;
+  traits.depth = format.comp[0].depth;
+  return traits;
+}
+
+// What a change of format costs: losses first, in the order in which an eye would miss them, then
+// what it inflates. (libav's own choice prefers 16 bits for 10-bit pictures in another byte order.)
+int ConversionCost(const AVPixFmtDescriptor& source, const AVPixFmtDescriptor& target) {
+  const FormatTraits from = TraitsOf(source);
+  const FormatTraits to = TraitsOf(target);
+  int cost = 1;  // an equal format costs nothing
+  const auto add = [&cost](bool applies, int amount) { cost += applies ? amount : 0; };
+  add(to.is_gray && !from.is_gray, 1000);
+  add(from.has_alpha && !to.has_alpha, 300);
+  add(!from.is_gray && !to.is_gray && from.is_rgb != to.is_rgb, 50);
+  add(from.is_gray && !to.is_gray, to.is_rgb ? 60 : 10);
+  add(to.has_alpha && !from.has_alpha, 5);
+  add(!to.is_planar, 1);
+  const int deeper = to.depth - from.depth;
+  cost += deeper < 0 ? -20 * deeper : 2 * deeper;
+  if (!from.is_gray && !to.is_gray) {
+    const int coarser = (target.log2_chroma_w - source.log2_chroma_w);
+    const int lower = (target.log2_chroma_h - source.log2_chroma_h);
+    cost += coarser > 0 ? 100 * coarser : -3 * coarser;
+    cost += lower > 0 ? 100 * lower : -3 * lower;
+  }
+  return cost;
+}
+
 }  // namespace
 
 std::optional<PixelLayout> LayoutOf(AVPixelFormat format, AVColorRange range,
@@ -186,17 +229,19 @@ AVPixelFormat WithoutRange(AVPixelFormat format) {
 bool NameSaysFullRange(AVPixelFormat format) { return WithoutRange(format) != format; }
 
 AVPixelFormat NearestFormat(AVPixelFormat format, const std::vector<AVPixelFormat>& candidates) {
+  const AVPixFmtDescriptor* source = av_pix_fmt_desc_get(WithoutRange(format));
   AVPixelFormat best = AV_PIX_FMT_NONE;
-  const AVPixFmtDescriptor* description = av_pix_fmt_desc_get(format);
-  const bool has_alpha =
-      description != nullptr && (description->flags & AV_PIX_FMT_FLAG_ALPHA) != 0;
+  int best_cost = 0;
   for (const AVPixelFormat candidate : candidates) {
-    if (WithoutRange(candidate) == WithoutRange(format)) {
-      return candidate;
+    const AVPixFmtDescriptor* target = av_pix_fmt_desc_get(WithoutRange(candidate));
+    if (source == nullptr || target == nullptr) {
+      continue;
     }
-    best = best == AV_PIX_FMT_NONE
-               ? candidate
-               : av_find_best_pix_fmt_of_2(best, candidate, format, has_alpha ? 1 : 0, nullptr);
+    const int cost = source == target ? 0 : ConversionCost(*source, *target);
+    if (best == AV_PIX_FMT_NONE || cost < best_cost) {
+      best = candidate;
+      best_cost = cost;
+    }
   }
   return best;
 }
