@@ -17,8 +17,8 @@ namespace {
 
 // The smoother passes |P| = |C| / (1 + (w/w2)^4 + (w/w3)^6) of a motion of angular frequency w;
 // w2 and w3 are these shares of 2 pi / smoothness_s.
-constexpr double kAccelerationCutoff = 0.40;
-constexpr double kJerkCutoff = 0.40;
+constexpr double kAccelerationCutoff = 0.25;
+constexpr double kJerkCutoff = 0.30;
 // A fast pan is meant: smoothing relaxes by exp(-(speed / kPanSpeed)^2), the Gaussian in path
 // difference of Liu et al. 2013, eq. 2. Widths per second, of the motion averaged over kPanWindowS.
 constexpr double kPanSpeed = 0.9;
@@ -30,7 +30,12 @@ constexpr double kShiftReluctance = 1.5 * kReferenceWidthPx;
 constexpr double kZoomReluctance = 1.0 * kReferenceWidthPx;
 constexpr double kStretchReluctance = 10.0 * kReferenceWidthPx;
 // The same when a sensor knows the turn: the tracks' noise must not leak into the picture's shape.
-constexpr double kKnownRotationFactor = 20.0;
+constexpr double kKnownRotationFactor = 100.0;
+// Every pixel that the corners of the whole picture move outwards must be hidden by zooming, so it
+// costs this much more than moving inwards. Measured on four shaky clips: with 4 instead of 0 the
+// kept share of a side rises from 0.82 to 0.86, 0.86 to 0.90, 0.88 to 0.92 and 0.93 to 0.95, at 5
+// to 15% more remaining shake.
+constexpr double kBorderWeight = 4.0;
 // The crop limit is a penalty on the corners that leave the picture, raised tenfold until none
 // leaves it by more than kMaxCropViolation.
 constexpr double kCropWeight = 10.0;
@@ -241,10 +246,14 @@ class CeresPathSmoother final : public PathSmoother {
           new ceres::AutoDiffCostFunction<DataResidual, DataResidual::kSize, kUpdateSize>(
               new DataResidual(data)),
           nullptr, nodes_[i].theta.data());
-      problem.AddResidualBlock(
-          new ceres::AutoDiffCostFunction<CropResidual, CropResidual::kSize, kUpdateSize>(
-              new CropResidual{f, crop_weight, options_.min_crop_ratio, options_.aspect}),
-          nullptr, nodes_[i].theta.data());
+      for (const CropResidual& crop :
+           {CropResidual{f, kBorderWeight, 1.0, options_.aspect},
+            CropResidual{f, crop_weight, options_.min_crop_ratio, options_.aspect}}) {
+        problem.AddResidualBlock(
+            new ceres::AutoDiffCostFunction<CropResidual, CropResidual::kSize, kUpdateSize>(
+                new CropResidual(crop)),
+            nullptr, nodes_[i].theta.data());
+      }
       if (options_.tripod && i >= 1) {
         problem.AddResidualBlock(
             new ceres::AutoDiffCostFunction<VelocityResidual, VelocityResidual::kSize, kUpdateSize,

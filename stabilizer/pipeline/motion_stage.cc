@@ -22,7 +22,7 @@ using stabilizer::MotionRung;
 using stabilizer::RectifiedMatch;
 
 // Zoom may change over this long to either side of a frame that needs it.
-constexpr double kZoomReachS = 1.0;
+constexpr double kZoomReachS = 0.8;
 // Focal length where nobody knows it, in picture widths (64 degrees): phones and action cameras in
 // their linear modes lie between 0.6 and 1.0.
 constexpr double kDefaultFocalRatio = 0.8;

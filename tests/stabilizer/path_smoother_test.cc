@@ -266,7 +266,7 @@ void CheckGradient(Residual* functor) {
   }
   const std::vector<const ceres::Manifold*> none(blocks.size(), nullptr);
   ceres::NumericDiffOptions numeric;
-  numeric.relative_step_size = 1e-4;
+  numeric.ridders_relative_initial_step_size = 1e-3;
   ceres::GradientChecker checker(&cost, &none, numeric);
   ceres::GradientChecker::ProbeResults results;
   EXPECT_TRUE(checker.Probe(blocks.data(), 1e-4, &results)) << results.error_log;
