@@ -101,7 +101,7 @@ struct MapGrid {
 // picture, lie on vertices. Infinite when a vertex is not a number.
 [[nodiscard]] double OverhangPx(const BackwardMap& map);
 
-// Share of output pixels, in [0, 1], whose source lies outside that rectangle; 0 exactly when
+// Share of output pixels, in [0, 1], whose source lies outside that rectangle; 0 whenever
 // OverhangPx() <= 0.
 [[nodiscard]] double UndefinedShare(const BackwardMap& map);
 

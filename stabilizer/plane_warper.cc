@@ -53,17 +53,44 @@ struct Segment {
   float grid_step;   // the same from one sample to the next
 };
 
-// Start, growth per sample, and bounds of a coordinate -> rounded fixed point. NaN comes out as the
-// lower bound. The compiler turns this into vector code.
-void FillLine(float start, float step, float low, float high, std::int32_t* out, int count) {
+// Positions start + i step of one coordinate, in 1 / kPhases of a sample.
+struct Line {
+  float start;
+  float step;
+  float low;  // bounds to clamp to
+  float high;
+
+  [[nodiscard]] float At(int i) const { return start + step * static_cast<float>(i); }
+  // False for NaN.
+  [[nodiscard]] bool StaysInside(int count) const {
+    const float last = At(count - 1);
+    return start >= low && start <= high && last >= low && last <= high;
+  }
+  // NaN comes out as the lower bound.
+  [[nodiscard]] float ClampedAt(int i) const {
+    const float above = At(i) > low ? At(i) : low;
+    return std::min(above, high);
+  }
+};
+
+// To the nearest; `position` is not below -kOutsideMarginPx.
+std::int32_t Round(float position) {
   // Truncation rounds down once the number is positive.
-  const float lift = kOutsideMarginPx * kPhases + 0.5F;
-  constexpr auto kLift = static_cast<std::int32_t>(kOutsideMarginPx) * kPhases;
-  for (int i = 0; i < count; ++i) {
-    const float position = start + step * static_cast<float>(i);
-    const float above = position > low ? position : low;
-    const float inside = above < high ? above : high;
-    out[i] = static_cast<std::int32_t>(inside + lift) - kLift;
+  constexpr int kLift = static_cast<int>(kOutsideMarginPx) * kPhases;
+  return static_cast<std::int32_t>(position + (kLift + 0.5F)) - kLift;
+}
+
+void FillLines(const Line& x, const Line& y, int count, std::int32_t* out_x, std::int32_t* out_y) {
+  if (x.StaysInside(count) && y.StaysInside(count)) {
+    for (int i = 0; i < count; ++i) {
+      out_x[i] = Round(x.At(i));
+      out_y[i] = Round(y.At(i));
+    }
+  } else {
+    for (int i = 0; i < count; ++i) {
+      out_x[i] = Round(x.ClampedAt(i));
+      out_y[i] = Round(y.ClampedAt(i));
+    }
   }
 }
 
@@ -106,8 +133,8 @@ class PositionSampler {
       const Eigen::Vector2f start = left + segment.grid_begin * across;
       const Eigen::Vector2f step = segment.grid_step * across;
       const int count = segment.end - segment.begin;
-      FillLine(start.x(), step.x(), low, high_x, out_x + segment.begin, count);
-      FillLine(start.y(), step.y(), low, high_y, out_y + segment.begin, count);
+      FillLines({start.x(), step.x(), low, high_x}, {start.y(), step.y(), low, high_y}, count,
+                out_x + segment.begin, out_y + segment.begin);
       left = right;
     }
   }

@@ -16,8 +16,7 @@ namespace rsstab::stabilizer::detail {
 //   result = clamp(((sum_r w_y[r] h[r] + 2^(down_shift-1)) >> down_shift) + bias, 0, maximum)
 // so that both products are 16 bit by 16 bit, summed in 32 bits. Up to 14 bits deep, h keeps all
 // the fraction bits that leave room for the overshoot (factor 1.27 of Lanczos); deeper samples are
-// centred on zero, have no room for a fraction and saturate, which clips no more than the last
-// clamp does.
+// centred on zero, have no room for a fraction, and saturate where a row overshoots their range.
 struct FixedPoint {
   std::int32_t bias;
   int along_row_shift;
@@ -30,6 +29,10 @@ struct FixedPoint {
         down_shift(bit_depth > kWeightBits ? kWeightBits : 2 * kWeightBits - bit_depth),
         maximum((1 << bit_depth) - 1) {}
 };
+
+inline unsigned PhaseOf(std::int32_t position) {
+  return static_cast<unsigned>(position) & (kPhases - 1);
+}
 
 // Samples [begin, end) of the row, whatever their positions.
 void ResamplePortable(const ResampleRow& row, const FilterBank& filter, int begin, int end);

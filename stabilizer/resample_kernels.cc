@@ -11,65 +11,77 @@
 namespace rsstab::stabilizer {
 namespace {
 
-int TapsOf(Interpolation interpolation) {
-  switch (interpolation) {
-    case Interpolation::kBilinear:
-      return 2;
-    case Interpolation::kBicubic:
-      return 4;
-    case Interpolation::kLanczos:
-      return 6;
-  }
-  return 2;
+using Entry = std::array<std::int16_t, FilterBank::kEntry>;
+
+constexpr int kOne = 1 << kWeightBits;
+
+// In integers: the vector kernels compute bilinear and bicubic weights instead of looking them up.
+Entry BilinearWeights(int phase) {
+  constexpr int kPerPhase = kOne / kPhases;
+  return {static_cast<std::int16_t>(kOne - kPerPhase * phase),
+          static_cast<std::int16_t>(kPerPhase * phase)};
 }
 
-// Impulse response at a distance of x pixels.
-double Kernel(Interpolation interpolation, double x) {
-  x = std::abs(x);
+// Keys 1981 with a = -1/2. With t the position between the middle taps and u = 1 - t, the outer
+// weights are -a = -t u^2 / 2 and -b = -t^2 u / 2, and the inner ones follow from the sum (1) and
+// the first moment (t): u + 2a - b and t + 2b - a. Rounding a and b alone keeps both exact.
+Entry BicubicWeights(int phase) {
+  constexpr int kPerPhase = kOne / kPhases;
+  // kOne t^2 u / 2 = phase^2 (kPhases - phase) / 2^11, to the nearest.
+  const auto rounded = [](int t, int u) { return (t * u * t + (1 << 10)) >> 11; };
+  const int t = phase;
+  const int u = kPhases - phase;
+  const int a = rounded(u, t);
+  const int b = rounded(t, u);
+  return {static_cast<std::int16_t>(-a), static_cast<std::int16_t>(kPerPhase * u + 2 * a - b),
+          static_cast<std::int16_t>(kPerPhase * t + 2 * b - a), static_cast<std::int16_t>(-b)};
+}
+
+Entry LanczosWeights(int phase) {
+  constexpr std::size_t kLobes = 3;
+  std::array<double, 2 * kLobes> exact{};
+  double sum = 0.0;
+  for (std::size_t k = 0; k < exact.size(); ++k) {
+    const double tap = static_cast<double>(k) - (kLobes - 1.0);
+    const double x = std::numbers::pi * (tap - static_cast<double>(phase) / kPhases);
+    exact[k] = x == 0.0 ? 1.0 : std::sin(x) * std::sin(x / kLobes) * kLobes / (x * x);
+    sum += exact[k];
+  }
+  Entry weights{};
+  int rest = kOne;
+  for (std::size_t k = 0; k < exact.size(); ++k) {
+    weights[k] = static_cast<std::int16_t>(std::lround(exact[k] / sum * kOne));
+    rest -= weights[k];
+  }
+  // What rounding lost goes to the largest weight, where it matters least.
+  std::int16_t& largest = *std::max_element(weights.begin(), weights.end());
+  largest = static_cast<std::int16_t>(largest + rest);
+  return weights;
+}
+
+struct FilterShape {
+  int taps;
+  Entry (*weights)(int phase);
+};
+FilterShape ShapeOf(Interpolation interpolation) {
   switch (interpolation) {
     case Interpolation::kBilinear:
-      return std::max(0.0, 1.0 - x);
-    case Interpolation::kBicubic:  // Keys 1981, eq. 15
-      if (x >= 2.0) {
-        return 0.0;
-      }
-      return x < 1.0 ? (1.5 * x - 2.5) * x * x + 1.0 : ((-0.5 * x + 2.5) * x - 4.0) * x + 2.0;
-    case Interpolation::kLanczos: {
-      constexpr double kLobes = 3.0;
-      if (x >= kLobes) {
-        return 0.0;
-      }
-      const double a = std::numbers::pi * x;
-      return x == 0.0 ? 1.0 : std::sin(a) * std::sin(a / kLobes) * kLobes / (a * a);
-    }
+      return {2, BilinearWeights};
+    case Interpolation::kBicubic:
+      return {4, BicubicWeights};
+    case Interpolation::kLanczos:
+      return {6, LanczosWeights};
   }
-  return 0.0;
+  return {2, BilinearWeights};
 }
 
 }  // namespace
 
-FilterBank::FilterBank(Interpolation interpolation)
-    // One entry more than there are phases, for reads past the last one's end.
-    : taps_(TapsOf(interpolation)), weights_((kPhases + 1) * kEntry) {
+FilterBank::FilterBank(Interpolation interpolation) : taps_(ShapeOf(interpolation).taps) {
+  weights_.reserve(kPhases * kEntry);
   for (int phase = 0; phase < kPhases; ++phase) {
-    std::array<double, 6> exact{};
-    double sum = 0.0;
-    for (int k = 0; k < taps_; ++k) {
-      const double tap_position = k - (taps_ / 2 - 1);
-      const double x = tap_position - static_cast<double>(phase) / kPhases;
-      exact[static_cast<std::size_t>(k)] = Kernel(interpolation, x);
-      sum += exact[static_cast<std::size_t>(k)];
-    }
-    std::int16_t* weights = weights_.data() + phase * kEntry + kMargin;
-    int rest = 1 << kWeightBits;
-    for (int k = 0; k < taps_; ++k) {
-      const double scaled = exact[static_cast<std::size_t>(k)] / sum * (1 << kWeightBits);
-      weights[k] = static_cast<std::int16_t>(std::lround(scaled));
-      rest -= weights[k];
-    }
-    // What rounding lost goes to the largest weight, where it matters least.
-    std::int16_t& largest = *std::max_element(weights, weights + taps_);
-    largest = static_cast<std::int16_t>(largest + rest);
+    const Entry entry = ShapeOf(interpolation).weights(phase);
+    weights_.insert(weights_.end(), entry.begin(), entry.end());
   }
 }
 
@@ -107,16 +119,36 @@ Sample Filter(const Sample* taps, std::ptrdiff_t step_x, std::ptrdiff_t step_y,
       std::clamp((total >> format.down_shift) + format.bias, 0, format.maximum));
 }
 
+// A plane of Sample, seen through one of its channels.
+template <typename Sample>
+struct Plane {
+  const Sample* data;
+  std::ptrdiff_t stride;  // samples
+  int channels;
+  int right;   // last column
+  int bottom;  // last row
+
+  [[nodiscard]] const Sample* At(int x, int y, int channel) const {
+    return data + y * stride + static_cast<std::ptrdiff_t>(x) * channels + channel;
+  }
+  [[nodiscard]] bool HoldsTaps(int x, int y, int taps) const {
+    return x >= 0 && y >= 0 && x + taps - 1 <= right && y + taps - 1 <= bottom;
+  }
+  [[nodiscard]] bool IsNear(std::int32_t qx, std::int32_t qy) const {
+    constexpr int kHalfPixel = kPhases / 2;
+    return qx >= -kHalfPixel && qx <= (right << kPhaseBits) + kHalfPixel && qy >= -kHalfPixel &&
+           qy <= (bottom << kPhaseBits) + kHalfPixel;
+  }
+};
+
 template <typename Sample, int kTaps>
 void ResampleSamples(const ResampleRow& row, const FilterBank& filter, int begin, int end) {
   constexpr int kBefore = kTaps / 2 - 1;  // taps left of or above the position's floor
-  constexpr int kHalfPixel = kPhases / 2;
   const FixedPoint format(row.bit_depth);
-  const auto* source = reinterpret_cast<const Sample*>(row.source);
+  const Plane<Sample> plane{reinterpret_cast<const Sample*>(row.source),
+                            row.source_stride / static_cast<std::ptrdiff_t>(sizeof(Sample)),
+                            row.channels, row.source_width - 1, row.source_height - 1};
   auto* output = reinterpret_cast<Sample*>(row.output);
-  const std::ptrdiff_t stride = row.source_stride / static_cast<std::ptrdiff_t>(sizeof(Sample));
-  const int right = row.source_width - 1;
-  const int bottom = row.source_height - 1;
 
   int channel = begin % row.channels;
   for (int i = begin; i < end; ++i) {
@@ -124,24 +156,22 @@ void ResampleSamples(const ResampleRow& row, const FilterBank& filter, int begin
     const std::int32_t qy = row.source_y[static_cast<std::size_t>(i)];
     const int x = (qx >> kPhaseBits) - kBefore;
     const int y = (qy >> kPhaseBits) - kBefore;
-    const std::int16_t* weights_x = filter.Weights(qx & (kPhases - 1));
-    const std::int16_t* weights_y = filter.Weights(qy & (kPhases - 1));
-    if (x >= 0 && y >= 0 && x + kTaps - 1 <= right && y + kTaps - 1 <= bottom) {
-      const Sample* taps = source + y * stride + x * row.channels + channel;
-      output[i] = Filter<Sample, kTaps>(taps, row.channels, stride, weights_x, weights_y, format);
-    } else if (qx < -kHalfPixel || qy < -kHalfPixel || qx > (right << kPhaseBits) + kHalfPixel ||
-               qy > (bottom << kPhaseBits) + kHalfPixel) {
-      output[i] = static_cast<Sample>(row.black[static_cast<std::size_t>(channel)]);
-    } else {
-      std::array<Sample, static_cast<std::size_t>(kTaps * kTaps)> taps;
+    const std::int16_t* weights_x = filter.Weights(PhaseOf(qx));
+    const std::int16_t* weights_y = filter.Weights(PhaseOf(qy));
+    if (plane.HoldsTaps(x, y, kTaps)) {
+      output[i] = Filter<Sample, kTaps>(plane.At(x, y, channel), plane.channels, plane.stride,
+                                        weights_x, weights_y, format);
+    } else if (plane.IsNear(qx, qy)) {
+      Sample taps[kTaps][kTaps];
       for (int r = 0; r < kTaps; ++r) {
-        const Sample* line = source + std::clamp(y + r, 0, bottom) * stride + channel;
         for (int k = 0; k < kTaps; ++k) {
-          taps[static_cast<std::size_t>(r * kTaps + k)] =
-              line[std::clamp(x + k, 0, right) * row.channels];
+          taps[r][k] = *plane.At(std::clamp(x + k, 0, plane.right),
+                                 std::clamp(y + r, 0, plane.bottom), channel);
         }
       }
-      output[i] = Filter<Sample, kTaps>(taps.data(), 1, kTaps, weights_x, weights_y, format);
+      output[i] = Filter<Sample, kTaps>(taps[0], 1, kTaps, weights_x, weights_y, format);
+    } else {
+      output[i] = static_cast<Sample>(row.black[static_cast<std::size_t>(channel)]);
     }
     channel = channel + 1 == row.channels ? 0 : channel + 1;
   }

@@ -30,14 +30,12 @@ class FilterBank {
   // of the position's floor.
   [[nodiscard]] int taps() const { return taps_; }
 
-  // The taps() weights of a phase, with kMargin zeros on either side and kEntry weights from one
-  // phase to the next; vector code may read kEntry weights from any of them.
-  [[nodiscard]] const std::int16_t* Weights(int phase) const {
-    return weights_.data() + phase * kEntry + kMargin;
+  // kEntry weights, zeros behind the first taps().
+  [[nodiscard]] const std::int16_t* Weights(unsigned phase) const {
+    return weights_.data() + static_cast<std::size_t>(phase) * kEntry;
   }
 
-  static constexpr int kMargin = 2;
-  static constexpr int kEntry = 16;
+  static constexpr std::size_t kEntry = 8;
 
  private:
   int taps_;
@@ -55,8 +53,8 @@ struct ResampleRow {
   int source_height = 0;
   int channels = 1;   // interleaved samples per pixel
   int bit_depth = 8;  // 8: bytes, 9..16: uint16
-  std::array<int, kMaxChannels>
-      black{};  // per channel, for positions more than half a pixel outside
+  // Per channel, for positions more than half a pixel outside.
+  std::array<int, kMaxChannels> black{};
   std::span<const std::int32_t> source_x;  // one per output sample
   std::span<const std::int32_t> source_y;
   std::uint8_t* output = nullptr;

@@ -23,7 +23,8 @@ namespace {
 constexpr int kSamples = 8;
 constexpr int kLaneSamples = 4;
 constexpr int kLaneBytes = 16;
-constexpr int kMaxRowDrop = FilterBank::kMargin;
+constexpr int kMaxRowDrop = 2;
+constexpr int kRowsAhead = 6;  // prefetched below the last tap
 
 template <typename Sample, int kTaps>
 struct Avx2Kernel {
@@ -40,13 +41,14 @@ struct Avx2Kernel {
     __m256i tap_pair_bytes;  // shuffle control of a pair of taps, relative to its first byte
     __m256i last_x;          // greatest position of a lane's first tap with all reads inside
     __m256i last_y;          //   the picture, for samples on one row
-    __m256i bias;
+    // FixedPoint:
+    __m256i bias;  // 16 bit
     __m256i along_row_round;
     __m128i along_row_shift;
     __m256i down_round;
     __m128i down_shift;
-    __m256i level_bias;
-    __m128i maximum;
+    __m256i level_bias;  // 32 bit
+    __m128i maximum;     // 16 bit
   };
 
   // The 16 bytes of the last pair of taps end with the row at the latest.
@@ -66,21 +68,25 @@ struct Avx2Kernel {
     const unsigned control =
         kBytes == 1 ? 0x80008000U | (next << 16) : 0x01000100U | (next << 16) | (next << 24);
     return {
-        pixel_bytes,
-        _mm_cvtsi32_si128(std::countr_zero(static_cast<unsigned>(pixel_bytes))),
-        _mm256_setr_epi32(0, c2, c4, c4 + c2, 0, c2, c4, c4 + c2),
-        _mm256_set1_epi32(kLaneBytes - pixel_bytes - kBytes),
-        _mm256_set1_epi32(static_cast<int>(control)),
-        _mm256_set1_epi32(LastX(row)),
-        _mm256_set1_epi32(LastY(row)),
-        _mm256_set1_epi16(static_cast<short>(format.bias)),
-        _mm256_set1_epi32(1 << (format.along_row_shift - 1)),
-        _mm_cvtsi32_si128(format.along_row_shift),
-        _mm256_set1_epi32(1 << (format.down_shift - 1)),
-        _mm_cvtsi32_si128(format.down_shift),
-        _mm256_set1_epi32(format.bias),
-        _mm_set1_epi16(static_cast<short>(format.maximum)),
+        .pixel_bytes = pixel_bytes,
+        .pixel_shift = _mm_cvtsi32_si128(std::countr_zero(static_cast<unsigned>(pixel_bytes))),
+        .channel_offset = _mm256_setr_epi32(0, c2, c4, c4 + c2, 0, c2, c4, c4 + c2),
+        .last_offset = _mm256_set1_epi32(kLaneBytes - pixel_bytes - kBytes),
+        .tap_pair_bytes = _mm256_set1_epi32(static_cast<int>(control)),
+        .last_x = _mm256_set1_epi32(LastX(row)),
+        .last_y = _mm256_set1_epi32(LastY(row)),
+        .bias = _mm256_set1_epi16(static_cast<short>(format.bias)),
+        .along_row_round = _mm256_set1_epi32(1 << (format.along_row_shift - 1)),
+        .along_row_shift = _mm_cvtsi32_si128(format.along_row_shift),
+        .down_round = _mm256_set1_epi32(1 << (format.down_shift - 1)),
+        .down_shift = _mm_cvtsi32_si128(format.down_shift),
+        .level_bias = _mm256_set1_epi32(format.bias),
+        .maximum = _mm_set1_epi16(static_cast<short>(format.maximum)),
     };
+  }
+
+  RSSTAB_AVX2_INLINE static __m256i Load(const std::int32_t* values) {
+    return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(values));
   }
 
   RSSTAB_AVX2_INLINE static __m256i LoadLanes(const void* low, const void* high) {
@@ -90,32 +96,86 @@ struct Avx2Kernel {
   }
 
   // True where 0 <= a <= b.
-  RSSTAB_AVX2_INLINE static __m256i WithinZeroAnd(__m256i a, __m256i b) {
+  RSSTAB_AVX2_INLINE static __m256i FromZeroTo(__m256i a, __m256i b) {
     return _mm256_cmpeq_epi32(_mm256_min_epu32(a, b), a);
   }
 
-  // Turns the weights of eight samples, from `entries` on, into `kCount` vectors of weight pairs.
-  template <int kCount>
-  RSSTAB_AVX2_INLINE static void LoadWeightPairs(const std::int16_t* const (&entries)[kSamples],
-                                                 __m256i (&pairs)[kCount]) {
-    const __m256i a = LoadLanes(entries[0], entries[4]);
-    const __m256i b = LoadLanes(entries[1], entries[5]);
-    const __m256i c = LoadLanes(entries[2], entries[6]);
-    const __m256i d = LoadLanes(entries[3], entries[7]);
-    const __m256i ab01 = _mm256_unpacklo_epi32(a, b);
-    const __m256i cd01 = _mm256_unpacklo_epi32(c, d);
-    const __m256i ab23 = _mm256_unpackhi_epi32(a, b);
-    const __m256i cd23 = _mm256_unpackhi_epi32(c, d);
-    pairs[0] = _mm256_unpacklo_epi64(ab01, cd01);
-    if constexpr (kCount > 1) {
-      pairs[1] = _mm256_unpackhi_epi64(ab01, cd01);
+  // The weights of eight samples' positions, a vector per pair of taps.
+  struct Weights {
+    __m256i x[kPairs];
+    __m256i y[kPairs];
+  };
+
+  RSSTAB_AVX2_INLINE static void LoadPairs(const FilterBank& filter, const std::int32_t* positions,
+                                           __m256i (&pairs)[kPairs]) {
+    const auto load = [&](int low, int high) RSSTAB_AVX2 {
+      return LoadLanes(filter.Weights(PhaseOf(positions[low])),
+                       filter.Weights(PhaseOf(positions[high])));
+    };
+    const __m256i a = load(0, 4);
+    const __m256i b = load(1, 5);
+    const __m256i c = load(2, 6);
+    const __m256i d = load(3, 7);
+    const __m256i ab = _mm256_unpacklo_epi32(a, b);
+    const __m256i cd = _mm256_unpacklo_epi32(c, d);
+    pairs[0] = _mm256_unpacklo_epi64(ab, cd);
+    pairs[1] = _mm256_unpackhi_epi64(ab, cd);
+    pairs[2] = _mm256_unpacklo_epi64(_mm256_unpackhi_epi32(a, b), _mm256_unpackhi_epi32(c, d));
+  }
+
+  // The integer formulas of FilterBank, for both axes at once where there is one.
+  RSSTAB_AVX2_INLINE static Weights MakeWeights(const FilterBank& filter,
+                                                const std::int32_t* source_x,
+                                                const std::int32_t* source_y) {
+    Weights weights;
+    if constexpr (kTaps == 6) {
+      LoadPairs(filter, source_x, weights.x);
+      LoadPairs(filter, source_y, weights.y);
+    } else {
+      constexpr int kPerPhaseBits = kWeightBits - kPhaseBits;
+      const __m256i mask = _mm256_set1_epi32(kPhases - 1);
+      // Per lane, the phases of four x and of four y.
+      const __m256i t = _mm256_packs_epi32(_mm256_and_si256(Load(source_x), mask),
+                                           _mm256_and_si256(Load(source_y), mask));
+      const __m256i u = _mm256_sub_epi16(_mm256_set1_epi16(kPhases), t);
+      const __m256i near_left = _mm256_slli_epi16(u, kPerPhaseBits);
+      const __m256i near_right = _mm256_slli_epi16(t, kPerPhaseBits);
+      if constexpr (kTaps == 2) {
+        weights.x[0] = _mm256_unpacklo_epi16(near_left, near_right);
+        weights.y[0] = _mm256_unpackhi_epi16(near_left, near_right);
+      } else {
+        // mulhrs rounds a product / 2^15; the factor 2^4 makes that / 2^11.
+        const __m256i tu = _mm256_mullo_epi16(t, u);
+        const __m256i a = _mm256_mulhrs_epi16(tu, _mm256_slli_epi16(u, 4));
+        const __m256i b = _mm256_mulhrs_epi16(tu, _mm256_slli_epi16(t, 4));
+        const __m256i left =
+            _mm256_add_epi16(near_left, _mm256_sub_epi16(_mm256_add_epi16(a, a), b));
+        const __m256i right =
+            _mm256_add_epi16(near_right, _mm256_sub_epi16(_mm256_add_epi16(b, b), a));
+        const __m256i zero = _mm256_setzero_si256();
+        const __m256i far_left = _mm256_sub_epi16(zero, a);
+        const __m256i far_right = _mm256_sub_epi16(zero, b);
+        weights.x[0] = _mm256_unpacklo_epi16(far_left, left);
+        weights.x[1] = _mm256_unpacklo_epi16(right, far_right);
+        weights.y[0] = _mm256_unpackhi_epi16(far_left, left);
+        weights.y[1] = _mm256_unpackhi_epi16(right, far_right);
+      }
     }
-    if constexpr (kCount > 2) {
-      pairs[2] = _mm256_unpacklo_epi64(ab23, cd23);
+    return weights;
+  }
+
+  // Moves every sample's weights down by its `drop` rows, 0..kMaxRowDrop.
+  RSSTAB_AVX2_INLINE static void MoveDown(const __m256i (&weights)[kPairs], __m256i drop,
+                                          __m256i (&moved)[kPairs + 1]) {
+    // 16 bits a row; a shift by 32 leaves nothing.
+    const __m256i down = _mm256_slli_epi32(drop, 4);
+    const __m256i carry = _mm256_sub_epi32(_mm256_set1_epi32(32), down);
+    moved[0] = _mm256_sllv_epi32(weights[0], down);
+    for (int j = 1; j < kPairs; ++j) {
+      moved[j] = _mm256_or_si256(_mm256_srlv_epi32(weights[j - 1], carry),
+                                 _mm256_sllv_epi32(weights[j], down));
     }
-    if constexpr (kCount > 3) {
-      pairs[3] = _mm256_unpackhi_epi64(ab23, cd23);
-    }
+    moved[kPairs] = _mm256_srlv_epi32(weights[kPairs - 1], carry);
   }
 
   // Filters one source row for all eight samples.
@@ -124,7 +184,7 @@ struct Avx2Kernel {
                                              const Constants& constants) {
     __m256i sum = constants.along_row_round;
     for (int j = 0; j < kPairs; ++j) {
-      const std::ptrdiff_t offset = 2 * j * constants.pixel_bytes;
+      const std::ptrdiff_t offset = 2 * static_cast<std::ptrdiff_t>(j) * constants.pixel_bytes;
       __m256i taps = _mm256_shuffle_epi8(LoadLanes(low + offset, high + offset), shuffle);
       if constexpr (kBytes == 2) {
         taps = _mm256_xor_si256(taps, constants.bias);  // subtracts 2^15 or nothing
@@ -134,25 +194,20 @@ struct Avx2Kernel {
     return _mm256_sra_epi32(sum, constants.along_row_shift);
   }
 
-  // `low`, `high`: the byte under the first tap of each lane's first sample. `entries_y`: weights
-  // of 2 kRowPairs rows.
+  // `low`, `high`: the byte under the first tap of each lane's first sample.
   template <int kRowPairs>
   RSSTAB_AVX2_INLINE static __m256i FilterEight(const std::uint8_t* low, const std::uint8_t* high,
                                                 std::ptrdiff_t stride, __m256i shuffle,
-                                                const std::int16_t* const (&entries_x)[kSamples],
-                                                const std::int16_t* const (&entries_y)[kSamples],
+                                                const __m256i (&weights_x)[kPairs],
+                                                const __m256i (&weights_y)[kRowPairs],
                                                 const Constants& constants) {
     // Two packed rows per lane, eight 16-bit sums -> four pairs (upper row, lower row).
     const __m256i interleave =
         _mm256_setr_epi8(0, 1, 8, 9, 2, 3, 10, 11, 4, 5, 12, 13, 6, 7, 14, 15,  //
                          0, 1, 8, 9, 2, 3, 10, 11, 4, 5, 12, 13, 6, 7, 14, 15);
-    __m256i weights_x[kPairs];
-    __m256i weights_y[kRowPairs];
-    LoadWeightPairs(entries_x, weights_x);
-    LoadWeightPairs(entries_y, weights_y);
     __m256i total = constants.down_round;
     for (int j = 0; j < kRowPairs; ++j) {
-      const std::ptrdiff_t upper = 2 * j * stride;
+      const std::ptrdiff_t upper = 2 * static_cast<std::ptrdiff_t>(j) * stride;
       const std::ptrdiff_t lower = upper + stride;
       const __m256i rows =
           _mm256_packs_epi32(AlongRow(low + upper, high + upper, shuffle, weights_x, constants),
@@ -197,14 +252,8 @@ struct Avx2Kernel {
     const std::int32_t* source_x = row.source_x.data() + first;
     const std::int32_t* source_y = row.source_y.data() + first;
     const __m256i before = _mm256_set1_epi32(kBefore);
-    const __m256i x = _mm256_sub_epi32(
-        _mm256_srai_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(source_x)),
-                          kPhaseBits),
-        before);
-    const __m256i y = _mm256_sub_epi32(
-        _mm256_srai_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(source_y)),
-                          kPhaseBits),
-        before);
+    const __m256i x = _mm256_sub_epi32(_mm256_srai_epi32(Load(source_x), kPhaseBits), before);
+    const __m256i y = _mm256_sub_epi32(_mm256_srai_epi32(Load(source_y), kPhaseBits), before);
     const __m256i lane_x = _mm256_shuffle_epi32(x, 0x00);
     const __m256i y_pairs = _mm256_min_epi32(y, _mm256_shuffle_epi32(y, 0xB1));
     const __m256i lane_y = _mm256_min_epi32(y_pairs, _mm256_shuffle_epi32(y_pairs, 0x4E));
@@ -214,15 +263,15 @@ struct Avx2Kernel {
                          constants.channel_offset);
 
     const bool level = _mm256_testz_si256(drop, drop) != 0;
-    __m256i fits = _mm256_and_si256(WithinZeroAnd(lane_x, constants.last_x),
-                                    WithinZeroAnd(offset, constants.last_offset));
+    __m256i fits = _mm256_and_si256(FromZeroTo(lane_x, constants.last_x),
+                                    FromZeroTo(offset, constants.last_offset));
     __m256i last_y = constants.last_y;
     if (!level) {
       const __m256i max_drop = _mm256_set1_epi32(kMaxRowDrop);
-      fits = _mm256_and_si256(fits, WithinZeroAnd(drop, max_drop));
+      fits = _mm256_and_si256(fits, FromZeroTo(drop, max_drop));
       last_y = _mm256_sub_epi32(last_y, max_drop);
     }
-    fits = _mm256_and_si256(fits, WithinZeroAnd(lane_y, last_y));
+    fits = _mm256_and_si256(fits, FromZeroTo(lane_y, last_y));
     if (_mm256_movemask_epi8(fits) != -1) {
       return false;
     }
@@ -241,24 +290,18 @@ struct Avx2Kernel {
         static_cast<std::ptrdiff_t>(_mm256_extract_epi32(lane_x, kLaneSamples)) *
             constants.pixel_bytes;
 
-    const std::int16_t* entries_x[kSamples];
-    const std::int16_t* entries_y[kSamples];
-    for (int i = 0; i < kSamples; ++i) {
-      entries_x[i] = filter.Weights(source_x[i] & (kPhases - 1));
-      entries_y[i] = filter.Weights(source_y[i] & (kPhases - 1));
-    }
+    // The rows that later output rows will need: without it a third of the time is spent waiting
+    // for them. A prefetch may point anywhere.
+    _mm_prefetch(low + (kTaps + kRowsAhead) * row.source_stride, _MM_HINT_T0);
+
+    const Weights weights = MakeWeights(filter, source_x, source_y);
     __m256i values;
     if (level) {
-      values = FilterEight<kPairs>(low, high, row.source_stride, shuffle, entries_x, entries_y,
-                                   constants);
+      values = FilterEight(low, high, row.source_stride, shuffle, weights.x, weights.y, constants);
     } else {
-      alignas(32) std::int32_t drops[kSamples];
-      _mm256_store_si256(reinterpret_cast<__m256i*>(drops), drop);
-      for (int i = 0; i < kSamples; ++i) {
-        entries_y[i] -= drops[i];
-      }
-      values = FilterEight<kPairs + kMaxRowDrop / 2>(low, high, row.source_stride, shuffle,
-                                                     entries_x, entries_y, constants);
+      __m256i weights_y[kPairs + 1];
+      MoveDown(weights.y, drop, weights_y);
+      values = FilterEight(low, high, row.source_stride, shuffle, weights.x, weights_y, constants);
     }
     Store(row.output + static_cast<std::ptrdiff_t>(first) * kBytes, values, constants);
     return true;

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rendering one 1920x1080 frame: composing its backward map, and resampling its planes on one core
+// through the map of a rotated, zoomed and vibrating camera.
+//   plane_warper_bench --benchmark_repetitions=5 --benchmark_report_aggregates_only=true
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "igf/base/rotation.h"
+#include "stabilizer/backward_map.h"
+#include "stabilizer/plane_warper.h"
+
+namespace rsstab::stabilizer {
+namespace {
+
+constexpr int kWidth = 1920;
+constexpr int kHeight = 1080;
+constexpr double kFocalPx = 0.8 * kWidth;
+
+FrameWarp ShakyCamera() {
+  FrameWarp warp;
+  warp.width = kWidth;
+  warp.height = kHeight;
+  // Two degrees of roll, one of pan and tilt; the zoom keeps every pixel inside.
+  const Eigen::Matrix3d k = Camera::Pinhole(kWidth, kHeight, kFocalPx).K();
+  const Eigen::Matrix3d zoomed = Camera::Pinhole(kWidth, kHeight, 1.25 * kFocalPx).K();
+  const Eigen::Vector3d degrees(1.0, 1.0, 2.0);
+  warp.rectified_from_output =
+      k * ExpSo3<double>(degrees * (std::numbers::pi / 180.0)).toRotationMatrix() *
+      zoomed.inverse();
+  warp.mesh_update = MotionField(kWidth, kHeight, 17, 17);
+  for (Eigen::Vector2f& update : warp.mesh_update.vertices()) {
+    update = Eigen::Vector2f(1.0F, -1.0F);
+  }
+  warp.rs_field = MotionField(kWidth, kHeight, 17, 136);
+  for (int r = 0; r < warp.rs_field.rows(); ++r) {
+    const double phase = 2.0 * std::numbers::pi * 1.8 * r / warp.rs_field.rows();
+    for (int c = 0; c < warp.rs_field.columns(); ++c) {
+      warp.rs_field.At(c, r) =
+          Eigen::Vector2d(15.0 * std::sin(phase), 7.0 * std::cos(phase)).cast<float>();
+    }
+  }
+  return warp;
+}
+
+// Deterministic texture; the values do not matter for the speed.
+void FillTexture(Frame& frame) {
+  for (int p = 0; p < frame.layout.num_planes; ++p) {
+    const MutablePlaneView& plane = frame.planes[static_cast<std::size_t>(p)];
+    for (int y = 0; y < plane.height; ++y) {
+      for (std::ptrdiff_t x = 0; x < plane.stride; ++x) {
+        // Odd bytes are the upper halves of deep samples.
+        const bool upper = frame.layout.bit_depth > 8 && x % 2 == 1;
+        plane.data[y * plane.stride + x] =
+            static_cast<std::uint8_t>(upper ? y & 1 : (x * 7 + y * 13) & 0xFF);
+      }
+    }
+  }
+}
+
+PixelLayout Nv12Layout() {
+  PixelLayout layout = Yuv420Layout();
+  layout.num_planes = 2;
+  layout.channels = {1, 2, 1, 1};
+  return layout;
+}
+
+void ComposeMap(benchmark::State& state, bool with_lens) {
+  FrameWarp warp = ShakyCamera();
+  if (with_lens) {
+    Camera lens = Camera::Pinhole(kWidth, kHeight, kFocalPx);
+    lens.model = LensModel::kFisheye;
+    lens.distortion = {0.03, -0.01, 0.0, 0.0};
+    warp.lens = lens;
+  }
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(ComposeBackwardMap(warp));
+  }
+}
+
+void Warp(benchmark::State& state, const PixelLayout& layout, Interpolation interpolation,
+          KernelSet kernels) {
+  Frame source = AllocateFrame(layout, kWidth, kHeight).value();
+  Frame output = AllocateFrame(layout, kWidth, kHeight).value();
+  FillTexture(source);
+  const BackwardMap map = ComposeBackwardMap(ShakyCamera());
+  const PlaneWarper warper(kernels);
+  WorkerPool one_thread(1);
+  for (auto _ : state) {
+    if (!warper.Warp(source.View(), map, interpolation, output, one_thread)) {
+      state.SkipWithError("the warper refused the frame");
+      break;
+    }
+    benchmark::ClobberMemory();
+  }
+}
+
+struct NamedLayout {
+  const char* name;
+  PixelLayout layout;
+};
+struct NamedInterpolation {
+  const char* name;
+  Interpolation interpolation;
+};
+
+const bool kRegistered = [] {
+  benchmark::RegisterBenchmark("compose/pinhole", ComposeMap, false)->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark("compose/fisheye", ComposeMap, true)->Unit(benchmark::kMillisecond);
+  const NamedLayout layouts[] = {{"yuv420p", Yuv420Layout()},
+                                 {"yuv420p10", Yuv420Layout(10)},
+                                 {"nv12", Nv12Layout()},
+                                 {"rgba", RgbaLayout()}};
+  const NamedInterpolation interpolations[] = {{"bilinear", Interpolation::kBilinear},
+                                               {"bicubic", Interpolation::kBicubic},
+                                               {"lanczos", Interpolation::kLanczos}};
+  const auto add = [&](const std::string& prefix, KernelSet kernels) {
+    for (const auto& [layout_name, layout] : layouts) {
+      for (const auto& [name, interpolation] : interpolations) {
+        benchmark::RegisterBenchmark((prefix + layout_name + "/" + name).c_str(), Warp, layout,
+                                     interpolation, kernels)
+            ->Unit(benchmark::kMillisecond);
+      }
+    }
+  };
+  add("warp/", BestKernelSet());
+  add("warp_portable/", KernelSet::kPortable);
+  return true;
+}();
+
+}  // namespace
+}  // namespace rsstab::stabilizer
