@@ -38,10 +38,11 @@ using BlurKernel = std::array<float, kBlurTaps>;
 BlurKernel GaussianKernel(double sigma) {
   BlurKernel kernel{};
   double sum = 0.0;
-  for (int k = -kBlurReach; k <= kBlurReach; ++k) {
+  for (std::size_t i = 0; i < kBlurTaps; ++i) {
+    const double k = static_cast<double>(i) - kBlurReach;
     const double weight =
-        sigma > 0.0 ? std::exp(-0.5 * k * k / (sigma * sigma)) : (k == 0 ? 1.0 : 0.0);
-    kernel[static_cast<std::size_t>(k + kBlurReach)] = static_cast<float>(weight);
+        sigma > 0.0 ? std::exp(-0.5 * k * k / (sigma * sigma)) : (k == 0.0 ? 1.0 : 0.0);
+    kernel[i] = static_cast<float>(weight);
     sum += weight;
   }
   for (float& weight : kernel) {
@@ -96,9 +97,10 @@ cv::Mat BlurTowardsCorners(const cv::Mat& image, double focal) {
     auto* out = rows_done.ptr<float>(y);
     for (int x = 0; x < width; ++x) {
       const BlurKernel& kernel = across[static_cast<std::size_t>(x)];
+      const float* in_x = padded.data() + x;
       float sum = 0.0F;
-      for (int k = 0; k < kBlurTaps; ++k) {
-        sum += kernel[static_cast<std::size_t>(k)] * padded[static_cast<std::size_t>(x + k)];
+      for (std::size_t k = 0; k < kBlurTaps; ++k) {
+        sum += kernel[k] * in_x[k];
       }
       out[x] = sum;
     }

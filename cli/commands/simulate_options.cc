@@ -21,6 +21,7 @@ constexpr double kMilli = 1e-3;
 
 std::vector<std::pair<std::string, igf::MotionPreset>> MotionChoices() {
   std::vector<std::pair<std::string, igf::MotionPreset>> choices;
+  choices.reserve(igf::kMotionPresets.size());
   for (const igf::MotionPreset preset : igf::kMotionPresets) {
     choices.emplace_back(igf::MotionPresetName(preset), preset);
   }
