@@ -31,6 +31,7 @@ void InstallSignalHandlers() {
   ignore.sa_handler = SIG_IGN;
   sigemptyset(&ignore.sa_mask);
   sigaction(SIGPIPE, &ignore, nullptr);
+  sigaction(SIGXFSZ, &ignore, nullptr);
 }
 
 bool CancelRequested() { return cancel_requested.load(std::memory_order_relaxed); }

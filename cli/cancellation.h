@@ -6,8 +6,8 @@ namespace rsstab::cli {
 
 // From now on the first SIGINT, SIGTERM or SIGHUP only sets a flag, so that the running command can
 // stop between two frames and remove what it has half written; a second one ends the program at
-// once. SIGPIPE is ignored: a reader that goes away is then an ordinary write error. Call once,
-// before any thread starts.
+// once. SIGPIPE and SIGXFSZ are ignored: a reader that goes away and a file that may not grow are
+// then ordinary write errors. Call once, before any thread starts.
 void InstallSignalHandlers();
 
 // True once the user asked to stop. Any thread.

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "cli/commands/simulate_options.h"
 #include "cli/encode_options.h"
 #include "cli/run_options.h"
 #include "stabilizer/pipeline/stabilize_options.h"
@@ -17,7 +18,7 @@ inline constexpr int kExitDone = 0;
 inline constexpr int kExitFailed = 1;
 inline constexpr int kExitUsage = 2;
 
-enum class CommandId { kStabilize, kAnalyze, kRender, kInfo };
+enum class CommandId { kStabilize, kAnalyze, kRender, kInfo, kSimulate };
 
 // A command line, understood: which command, and everything it was told. Fields that a command does
 // not take keep their defaults.
@@ -28,6 +29,7 @@ struct Invocation {
   bool json = false;          // info: for programs instead of people
   pipeline::StabilizeOptions stabilize;
   EncodeOptions encode;
+  SimulateOptions simulate;
   RunOptions run;
 };
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "cli/version.h"
+#include "stabilizer/pipeline/version.h"
 
 namespace rsstab::cli {
 namespace {
@@ -65,6 +65,13 @@ void AddTable(CLI::App& app, const OptionTable<Options>& table, Options& target,
   }
 }
 
+void AddFolder(CLI::App& app, Invocation& invocation) {
+  app.add_option("FOLDER", invocation.simulate.output, "Where to write; made if it is missing.")
+      ->required()
+      ->type_name("")
+      ->take_last();
+}
+
 void AddInput(CLI::App& app, Invocation& invocation) {
   app.add_option("IN", invocation.input, "The clip: any file that FFmpeg's libraries read.")
       ->required()
@@ -110,6 +117,15 @@ std::vector<CommandText> BuildTexts() {
        "frame would be taken from.",
        {{"rs-stabilize info shaky.mp4", "for people"},
         {"rs-stabilize info --json shaky.mp4", "for programs"}}},
+      {CommandId::kSimulate,
+       "simulate",
+       "[OPTIONS] FOLDER",
+       "makes a shaky rolling-shutter clip of which everything is known",
+       "Writes into FOLDER a rolling-shutter clip (rs.mp4), what a global shutter would have seen "
+       "(gs.mp4), the gyro log (gyro.csv), the camera (camera.json) and the truth (truth.json).",
+       {{"rs-stabilize simulate walking --motion walking", "ten seconds of walking"},
+        {"rs-stabilize simulate mine --image photo.jpg --motion vibration --readout 28",
+         "from a photograph"}}},
   };
 }
 
@@ -132,14 +148,18 @@ std::unique_ptr<CLI::App> MakeCommandApp(CommandId id, Invocation& invocation) {
       text.description, text.name.empty() ? "rs-stabilize" : "rs-stabilize " + text.name);
   app->set_help_flag("-h,--help", "Print this help and exit.")->group("Running");
   invocation.command = id;
-  AddInput(*app, invocation);
+  if (id == CommandId::kSimulate) {
+    AddFolder(*app, invocation);
+  } else {
+    AddInput(*app, invocation);
+  }
   const auto& stabilize = pipeline::StabilizeOptionTable();
   switch (id) {
     case CommandId::kStabilize:
       AddTable(*app, EncodeOptionTable(), invocation.encode);
       AddTable(*app, stabilize, invocation.stabilize);
       AddTable(*app, RunOptionTable(), invocation.run);
-      app->set_version_flag("--version", std::string("rs-stabilize ") + kVersion,
+      app->set_version_flag("--version", std::string("rs-stabilize ") + pipeline::kProgramVersion,
                             "Print the version and exit.")
           ->group("Running");
       break;
@@ -168,6 +188,10 @@ std::unique_ptr<CLI::App> MakeCommandApp(CommandId id, Invocation& invocation) {
       app->add_flag("--json", invocation.json, "Print one JSON object instead of text.")
           ->group("Output");
       AddTable(*app, stabilize, invocation.stabilize, OptionStage::kAnalysis);
+      AddTable(*app, RunOptionTable(), invocation.run);
+      break;
+    case CommandId::kSimulate:
+      AddTable(*app, SimulateOptionTable(), invocation.simulate);
       AddTable(*app, RunOptionTable(), invocation.run);
       break;
   }

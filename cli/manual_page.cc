@@ -4,7 +4,7 @@
 #include <cctype>
 
 #include "cli/command_apps.h"
-#include "cli/version.h"
+#include "stabilizer/pipeline/version.h"
 
 namespace rsstab::cli {
 namespace {
@@ -57,7 +57,8 @@ std::string CommandSection(const CommandText& text) {
 
 std::string ManualPage() {
   const CommandText& main = TextOf(CommandId::kStabilize);
-  std::string page = ".TH RS\\-STABILIZE 1 \"\" \"rs\\-stabilize " + std::string(kVersion) +
+  std::string page = ".TH RS\\-STABILIZE 1 \"\" \"rs\\-stabilize " +
+                     std::string(pipeline::kProgramVersion) +
                      "\" \"User Commands\"\n.SH NAME\nrs\\-stabilize \\- " + Escape(main.summary) +
                      "\n.SH SYNOPSIS\n";
   for (const CommandText& text : CommandTexts()) {

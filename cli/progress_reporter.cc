@@ -103,6 +103,11 @@ void ProgressReporter::EndPass() {
   pass_ = 0;
 }
 
+void ProgressReporter::Abandon() {
+  const std::lock_guard lock(mutex_);
+  EraseBar();
+}
+
 void ProgressReporter::WriteLine(std::string_view line) {
   const std::lock_guard lock(mutex_);
   const std::string bar = bar_;

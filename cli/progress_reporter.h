@@ -34,6 +34,8 @@ class ProgressReporter {
   void Update(std::int64_t frames_done);
   // Closes the pass; its frames are done. Erases the bar.
   void EndPass();
+  // The pass will not be completed: erases the bar, prints nothing.
+  void Abandon();
 
   // Prints a line of text (a log message) above the bar.
   void WriteLine(std::string_view line);

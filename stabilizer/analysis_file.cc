@@ -217,7 +217,7 @@ Status AnalysisWriter::Append(const FrameAnalysis& frame) {
   return impl_->Write(body.bytes());
 }
 
-Status AnalysisWriter::Finish(ClipAnalysis clip) {
+Result<ClipAnalysis> AnalysisWriter::Finish(ClipAnalysis clip) {
   clip.num_frames = impl_->num_frames;
   clip.smallest_crop_ratio = impl_->smallest_crop_ratio;
   // Names and reasons may hold any bytes; JSON wants UTF-8.
@@ -232,10 +232,10 @@ Status AnalysisWriter::Finish(ClipAnalysis clip) {
   footer.Put(Checksum(footer.bytes()));
   footer.Put(std::span(reinterpret_cast<const std::uint8_t*>(kEndMagic.data()), kEndMagic.size()));
   if (Status ok = impl_->Write(summary); !ok) {
-    return ok;
+    return Propagate(std::move(ok.error()));
   }
   if (Status ok = impl_->Write(footer.bytes()); !ok) {
-    return ok;
+    return Propagate(std::move(ok.error()));
   }
   if (std::fclose(impl_->file.release()) != 0) {
     const std::string cause = LastError();
@@ -251,7 +251,7 @@ Status AnalysisWriter::Finish(ClipAnalysis clip) {
     return Fail(ErrorCode::kIo, "cannot name the analysis file {}: {}", impl_->path,
                 error.message());
   }
-  return {};
+  return clip;
 }
 
 struct AnalysisReader::Impl {

@@ -63,8 +63,9 @@ class AnalysisWriter {
   AnalysisWriter& operator=(const AnalysisWriter&) = delete;
 
   [[nodiscard]] Status Append(const FrameAnalysis& frame);
-  // Completes the file; num_frames and smallest_crop_ratio are filled in here.
-  [[nodiscard]] Status Finish(ClipAnalysis clip);
+  // Completes the file; num_frames and smallest_crop_ratio are filled in here. Returns what was
+  // written.
+  [[nodiscard]] Result<ClipAnalysis> Finish(ClipAnalysis clip);
 
  private:
   struct Impl;

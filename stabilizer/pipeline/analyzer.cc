@@ -195,10 +195,7 @@ Result<stabilizer::ClipAnalysis> Analyzer::Finish(const std::function<bool()>& c
       clip.options += (clip.options.empty() ? "--" : " --") + option.name + " " + value;
     }
   }
-  if (Status ok = s.writer->Finish(clip); !ok) {
-    return Propagate(std::move(ok.error()));
-  }
-  return clip;
+  return s.writer->Finish(std::move(clip));
 }
 
 }  // namespace rsstab::pipeline

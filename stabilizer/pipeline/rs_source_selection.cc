@@ -79,11 +79,32 @@ Result<igf::GyroSyncResult> Synchronize(const StabilizeOptions& options,
   return result;
 }
 
+// A log that tells nothing about the clip is a wrong log or a wrong offset.
+Status CheckOverlap(const igf::GyroLog& log, double offset_s, std::span<const PointTracks> tracks) {
+  if (tracks.empty()) {
+    return {};
+  }
+  const double clip_begin_s = tracks.front().from_time_s;
+  const double clip_end_s = tracks.back().to_time_s;
+  const double log_begin_s = log.start_s() + offset_s;
+  const double log_end_s = log.end_s() + offset_s;
+  if (log_begin_s < clip_end_s && log_end_s > clip_begin_s) {
+    return {};
+  }
+  return Fail(ErrorCode::kUntrustworthy,
+              "with the offset of {:.3f} s the log lasts from {:.3f} to {:.3f} s and the clip from "
+              "{:.3f} to {:.3f} s, which do not meet: check --gyro-offset",
+              offset_s, log_begin_s, log_end_s, clip_begin_s, clip_end_s);
+}
+
 Result<RsSelection> SelectGyro(const StabilizeOptions& options, CameraKnowledge known,
                                const RsInputs& inputs, std::span<const PointTracks> tracks) {
   const auto sync = Synchronize(options, known, *inputs.gyro, tracks);
   if (!sync) {
     return Propagate(sync.error(), inputs.gyro_origin);
+  }
+  if (Status ok = CheckOverlap(*inputs.gyro, sync->offset_s, tracks); !ok) {
+    return Propagate(std::move(ok.error()), inputs.gyro_origin);
   }
   if (!known.focal_is_known && sync->focal_is_trusted) {
     known.camera.fx *= sync->focal_ratio;

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/commands/stabilize.h"
+
+#include <utility>
+
+#include "cli/output_names.h"
+#include "cli/passes.h"
+
+namespace rsstab::cli {
+
+Status RunStabilize(const Invocation& invocation, const CommandContext& context) {
+  const pipeline::StabilizeOptions& options = invocation.stabilize;
+  const auto scratch = ScratchFolder::Create();
+  if (!scratch) {
+    return Propagate(scratch.error());
+  }
+  const std::string analysis_file = scratch->File("analysis");
+
+  auto clip = OpenClip(invocation.input, options, context.logger);
+  if (!clip) {
+    return Propagate(clip.error());
+  }
+  // The output is opened before the long first pass, so that a bad name, codec or full disk shows
+  // at once and not at half time.
+  auto second_look = OpenClip(invocation.input, options, SilentLogger());
+  if (!second_look) {
+    return Propagate(second_look.error());
+  }
+  auto output = OpenOutput(invocation.encode, options, **second_look, context.logger);
+  if (!output) {
+    return Propagate(output.error());
+  }
+
+  const auto analysis = AnalyzeClip(std::move(*clip), options, analysis_file, {1, 2}, context);
+  if (!analysis) {
+    return Propagate(analysis.error());
+  }
+  if (Status status = RenderClip(std::move(*second_look), std::move(*output), options,
+                                 analysis_file, {2, 2}, context);
+      !status) {
+    return status;
+  }
+  context.logger->info("{} frames done; at least {:.1f} % of each side was kept",
+                       analysis->num_frames, 100.0 * analysis->smallest_crop_ratio);
+  return {};
+}
+
+}  // namespace rsstab::cli

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/passes.h"
+
+#include <filesystem>
+#include <utility>
+
+#include "cli/cancellation.h"
+#include "cli/output_names.h"
+#include "cli/read_ahead.h"
+#include "cli/rs_inputs.h"
+#include "cli/write_behind.h"
+#include "stabilizer/pipeline/analyzer.h"
+#include "stabilizer/pipeline/renderer.h"
+
+namespace rsstab::cli {
+namespace {
+
+tl::unexpected<Error> Stopped() {
+  return Fail(ErrorCode::kCancelled, "stopped as asked for; nothing was written");
+}
+
+media::WriterOptions ToWriterOptions(const EncodeOptions& encode,
+                                     const pipeline::StabilizeOptions& options,
+                                     const Logger& logger) {
+  media::WriterOptions writer;
+  writer.codec = encode.codec;
+  writer.crf = encode.crf;
+  writer.preset = encode.preset;
+  writer.pix_fmt = encode.pix_fmt;
+  writer.encoder_options = encode.encoder_options;
+  writer.num_threads = options.num_threads;
+  writer.overwrite = encode.overwrite;
+  writer.logger = logger;
+  return writer;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<media::VideoReader>> OpenClip(const std::string& input,
+                                                     const pipeline::StabilizeOptions& options,
+                                                     const Logger& logger) {
+  if (input == "-") {
+    return Fail(ErrorCode::kUnsupported,
+                "standard input cannot be read twice, once to look and once to render; save the "
+                "clip to a file first");
+  }
+  return media::VideoReader::Open(input, {options.num_threads, logger});
+}
+
+Result<std::unique_ptr<media::VideoWriter>> OpenOutput(const EncodeOptions& encode,
+                                                       const pipeline::StabilizeOptions& options,
+                                                       media::VideoReader& clip,
+                                                       const Logger& logger) {
+  const media::WriterOptions writer = ToWriterOptions(encode, options, logger);
+  const std::string& input = clip.info().path;
+  const std::string output = encode.output.empty() ? DefaultOutput(input) : encode.output;
+  if (Status status = CheckOutput(input, output, encode.overwrite); !status) {
+    return Propagate(status.error());
+  }
+  auto opened = media::VideoWriter::Open(output, clip, writer);
+  if (opened || !encode.output.empty() || opened.error().code != ErrorCode::kUnsupported) {
+    return opened;
+  }
+  const std::string matroska = std::filesystem::path(output).replace_extension(".mkv").string();
+  if (Status status = CheckOutput(input, matroska, encode.overwrite); !status) {
+    return Propagate(status.error());
+  }
+  return media::VideoWriter::Open(matroska, clip, writer);
+}
+
+Result<stabilizer::ClipAnalysis> AnalyzeClip(std::unique_ptr<media::VideoReader> clip,
+                                             const pipeline::StabilizeOptions& options,
+                                             const std::string& analysis_file, PassNumber number,
+                                             const CommandContext& context) {
+  const media::VideoInfo info = clip->info();
+  auto inputs = ReadRsInputs(options, info, context.logger);
+  if (!inputs) {
+    return Propagate(inputs.error());
+  }
+  pipeline::ClipGeometry geometry{info.width, info.height};
+  if (info.frame_rate.Value() > 0.0) {
+    geometry.frames_per_second = info.frame_rate.Value();
+  }
+  auto analyzer = pipeline::Analyzer::Create(options, geometry, std::move(*inputs), analysis_file,
+                                             context.logger);
+  if (!analyzer) {
+    return Propagate(analyzer.error());
+  }
+
+  context.reporter->BeginPass(number.pass, number.passes, "analyze", info.frame_count);
+  ReadAhead frames(std::move(clip));
+  while (true) {
+    auto frame = frames.Next();
+    if (CancelRequested()) {
+      return Stopped();
+    }
+    if (!frame) {
+      return Propagate(frame.error(), info.path);
+    }
+    if (!*frame) {
+      break;
+    }
+    const media::VideoFrame& picture = **frame;
+    if (Status status = (*analyzer)->PushFrame(picture.frame.View(), picture.pts, picture.time_s);
+        !status) {
+      return Propagate(status.error());
+    }
+    context.reporter->Update(picture.index + 1);
+  }
+  auto analysis = (*analyzer)->Finish([] { return CancelRequested(); });
+  if (!analysis && analysis.error().code == ErrorCode::kCancelled) {
+    return Stopped();
+  }
+  context.reporter->EndPass();
+  return analysis;
+}
+
+Status RenderClip(std::unique_ptr<media::VideoReader> clip,
+                  std::unique_ptr<media::VideoWriter> output,
+                  const pipeline::StabilizeOptions& options, const std::string& analysis_file,
+                  PassNumber number, const CommandContext& context) {
+  const media::VideoInfo info = clip->info();
+  auto renderer =
+      pipeline::Renderer::Create(options, analysis_file, info.width, info.height, context.logger);
+  if (!renderer) {
+    return Propagate(renderer.error());
+  }
+
+  context.reporter->BeginPass(number.pass, number.passes, "render", (*renderer)->clip().num_frames);
+  ReadAhead frames(std::move(clip));
+  WriteBehind steady_clip(std::move(output));
+  while (true) {
+    auto frame = frames.Next();
+    if (CancelRequested()) {
+      return Stopped();
+    }
+    if (!frame) {
+      return Propagate(frame.error(), info.path);
+    }
+    if (!*frame) {
+      break;
+    }
+    auto steady = (*renderer)->Render((*frame)->frame, (*frame)->pts);
+    if (!steady) {
+      return Propagate(steady.error());
+    }
+    if (Status status = steady_clip.Write(std::move(*steady)); !status) {
+      return status;
+    }
+    context.reporter->Update((*frame)->index + 1);
+  }
+  if (Status status = (*renderer)->Finish(); !status) {
+    return status;
+  }
+  if (Status status = steady_clip.Finish(); !status) {
+    return status;
+  }
+  context.reporter->EndPass();
+  return {};
+}
+
+}  // namespace rsstab::cli

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef RSSTAB_CLI_PASSES_H_
+#define RSSTAB_CLI_PASSES_H_
+
+#include <memory>
+#include <string>
+
+#include "cli/command_context.h"
+#include "cli/encode_options.h"
+#include "cli/media/video_reader.h"
+#include "cli/media/video_writer.h"
+#include "igf/base/result.h"
+#include "stabilizer/analysis_file.h"
+#include "stabilizer/pipeline/stabilize_options.h"
+
+namespace rsstab::cli {
+
+// Which of how many passes of the whole command a pass is, for the progress.
+struct PassNumber {
+  int pass = 1;
+  int passes = 1;
+};
+
+// Opens the clip. Errors: those of VideoReader::Open; kUnsupported for standard input, which
+// cannot be read twice.
+[[nodiscard]] Result<std::unique_ptr<media::VideoReader>> OpenClip(
+    const std::string& input, const pipeline::StabilizeOptions& options, const Logger& logger);
+
+// Opens the output for frames that stem from `clip`: the named file, or the default one beside the
+// clip (in Matroska, should its own container not carry the encoding).
+[[nodiscard]] Result<std::unique_ptr<media::VideoWriter>> OpenOutput(
+    const EncodeOptions& encode, const pipeline::StabilizeOptions& options,
+    media::VideoReader& clip, const Logger& logger);
+
+// Pass 1: looks at the whole clip and writes `analysis_file`. Errors: kCancelled when the user
+// asked to stop; otherwise those of reader, gyro and analysis. Nothing is left after an error.
+[[nodiscard]] Result<stabilizer::ClipAnalysis> AnalyzeClip(
+    std::unique_ptr<media::VideoReader> clip, const pipeline::StabilizeOptions& options,
+    const std::string& analysis_file, PassNumber number, const CommandContext& context);
+
+// Pass 2: writes the steady clip. Errors as above.
+[[nodiscard]] Status RenderClip(std::unique_ptr<media::VideoReader> clip,
+                                std::unique_ptr<media::VideoWriter> output,
+                                const pipeline::StabilizeOptions& options,
+                                const std::string& analysis_file, PassNumber number,
+                                const CommandContext& context);
+
+}  // namespace rsstab::cli
+
+#endif  // RSSTAB_CLI_PASSES_H_

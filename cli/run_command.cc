@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/run_command.h"
+
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <new>
+
+#include "cli/cancellation.h"
+#include "cli/command_context.h"
+#include "cli/commands/analyze.h"
+#include "cli/commands/info.h"
+#include "cli/commands/render.h"
+#include "cli/commands/simulate.h"
+#include "cli/commands/stabilize.h"
+#include "cli/console_logger.h"
+#include "cli/media/av_log.h"
+
+namespace rsstab::cli {
+namespace {
+
+Status Simulate(const Invocation& invocation, const CommandContext& context) {
+  bool begun = false;
+  const Status status =
+      RunSimulate(invocation.simulate, context.logger, [&](std::int64_t done, std::int64_t frames) {
+        if (!begun) {
+          context.reporter->BeginPass(1, 1, "simulate", frames);
+          begun = true;
+        }
+        context.reporter->Update(done);
+        return !CancelRequested();
+      });
+  if (status && begun) {
+    context.reporter->EndPass();
+  }
+  return status;
+}
+
+Status Dispatch(const Invocation& invocation, const CommandContext& context) {
+  switch (invocation.command) {
+    case CommandId::kStabilize:
+      return RunStabilize(invocation, context);
+    case CommandId::kAnalyze:
+      return RunAnalyze(invocation, context);
+    case CommandId::kRender:
+      return RunRender(invocation, context);
+    case CommandId::kInfo:
+      return RunInfo(invocation, context);
+    case CommandId::kSimulate:
+      return Simulate(invocation, context);
+  }
+  return Fail(ErrorCode::kInternal, "no such command");
+}
+
+Status DispatchSafely(const Invocation& invocation, const CommandContext& context) {
+  try {
+    return Dispatch(invocation, context);
+  } catch (const std::bad_alloc&) {
+    return Fail(ErrorCode::kIo, "out of memory");
+  } catch (const std::exception& exception) {
+    return Fail(ErrorCode::kInternal, "this should not happen, please report it: {}",
+                exception.what());
+  }
+}
+
+}  // namespace
+
+int RunCommand(const Invocation& invocation) {
+  media::RouteAvLog();
+  CommandContext context;
+  context.reporter = std::make_shared<ProgressReporter>(StandardErrorSink(invocation.run.progress));
+  context.logger = MakeConsoleLogger(context.reporter, invocation.run.log_level);
+  const Status status = DispatchSafely(invocation, context);
+  if (status) {
+    return kExitDone;
+  }
+  // What ended the program is told at every log level.
+  context.reporter->Abandon();
+  context.reporter->WriteLine("rs-stabilize: error: " + status.error().message + "\n");
+  return kExitFailed;
+}
+
+}  // namespace rsstab::cli
