@@ -184,6 +184,17 @@ igf::RsSimulatorOptions SimulatorOptionsFrom(const SimulateOptions& options, dou
   return result;
 }
 
+// 4:2:0, which plays everywhere; encoders want even sizes for it, so odd ones keep all chroma.
+PixelLayout LayoutOf(const Camera& camera) {
+  PixelLayout layout = Yuv420Layout();
+  if (camera.width % 2 != 0 || camera.height % 2 != 0) {
+    layout.chroma_shift_x = 0;
+    layout.chroma_shift_y = 0;
+    layout.chroma_offset_y = 0.0;
+  }
+  return layout;
+}
+
 // The writer of one of the two clips.
 Result<std::unique_ptr<media::VideoWriter>> CreateClip(const std::string& path,
                                                        const Simulation& simulation,
@@ -208,7 +219,7 @@ Result<std::unique_ptr<media::VideoWriter>> CreateClip(const std::string& path,
 Status WriteClips(const Simulation& simulation, const SimulateOptions& options,
                   const std::string& rs_path, const std::string& gs_path, const Logger& logger,
                   const SimulateProgress& progress) {
-  const PixelLayout layout = Yuv420Layout();
+  const PixelLayout layout = LayoutOf(simulation.truth.camera);
   auto rs_clip = CreateClip(rs_path, simulation, layout, options, logger);
   if (!rs_clip) {
     return Propagate(rs_clip.error());
@@ -319,7 +330,7 @@ Status RunSimulate(const SimulateOptions& options, const Logger& logger,
     return Propagate(truth.error());
   }
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
+  const bool folder_is_new = std::filesystem::create_directories(folder, error);
   if (error) {
     return Fail(ErrorCode::kIo, "{}: the folder cannot be made: {}.", folder.string(),
                 error.message());
@@ -331,6 +342,9 @@ Status RunSimulate(const SimulateOptions& options, const Logger& logger,
   if (Status status =
           WriteClips(*simulation, options, path_of("rs.mp4"), path_of("gs.mp4"), logger, progress);
       !status) {
+    if (folder_is_new) {
+      std::filesystem::remove(folder, error);  // only if it is empty
+    }
     return status;
   }
   std::ostringstream gyro;

@@ -144,6 +144,21 @@ TEST(RunSimulate, StoppedLeavesNothingBehind) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
+TEST(RunSimulate, OddSizesKeepAllTheirChroma) {
+  const testing::TemporaryFolder folder;
+  SimulateOptions options = SmallClip(folder.path());
+  options.width = 33;
+  options.height = 17;
+  options.duration_s = 0.1;
+  options.foreground = true;
+  const Status status = RunSimulate(options, SilentLogger());
+  ASSERT_TRUE(status) << status.error().message;
+  const std::vector<Frame> frames = ReadClip(folder / "rs.mp4");
+  ASSERT_EQ(frames.size(), 3U);
+  EXPECT_EQ(frames[0].width, 33);
+  EXPECT_EQ(frames[0].layout.chroma_shift_x, 0);
+}
+
 TEST(RunSimulate, FollowsAGyroLog) {
   const testing::TemporaryFolder folder;
   {
