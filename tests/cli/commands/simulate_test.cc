@@ -137,7 +137,7 @@ TEST(RunSimulate, RefusesToReplaceFilesUnlessTold) {
 
 TEST(RunSimulate, StoppedLeavesNothingBehind) {
   const testing::TemporaryFolder folder;
-  const Status status = RunSimulate(SmallClip(folder.path()), SilentLogger(),
+  const Status status = RunSimulate(SmallClip(folder / "new"), SilentLogger(),
                                     [](std::int64_t done, std::int64_t) { return done < 3; });
   ASSERT_FALSE(status);
   EXPECT_EQ(status.error().code, ErrorCode::kCancelled);
