@@ -34,35 +34,72 @@ std::vector<AVPixelFormat> FormatsOf(const AVCodec& codec) {
   return formats;
 }
 
-// The format to encode in: the wanted one, else that of the input, else what comes nearest.
-Result<AVPixelFormat> ChooseFormat(const AVCodec& codec, AVPixelFormat input,
-                                   const std::string& wanted, const Logger& logger) {
+// H.264 and HEVC store sizes in whole chroma samples: an odd width needs unsubsampled chroma.
+bool CanHaveSize(const AVCodec& codec, AVPixelFormat format, int width, int height) {
+  const AVPixFmtDescriptor* description = av_pix_fmt_desc_get(format);
+  if ((codec.id != AV_CODEC_ID_H264 && codec.id != AV_CODEC_ID_HEVC) || description == nullptr) {
+    return true;
+  }
+  return width % (1 << description->log2_chroma_w) == 0 &&
+         height % (1 << description->log2_chroma_h) == 0;
+}
+
+std::string Names(const std::vector<AVPixelFormat>& formats) {
+  std::vector<std::string> names;
+  for (const AVPixelFormat format : formats) {
+    names.push_back(FormatName(format));
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+Result<AVPixelFormat> WantedFormat(const AVCodec& codec, const EncoderInput& input,
+                                   const std::string& wanted) {
   const std::vector<AVPixelFormat> possible = FormatsOf(codec);
+  const AVPixelFormat format = av_get_pix_fmt(wanted.c_str());
+  if (format == AV_PIX_FMT_NONE || sws_isSupportedOutput(format) == 0) {
+    return Fail(ErrorCode::kInvalidArgument,
+                "'{}' is not a pixel format; examples are yuv420p, yuv422p10le, yuv444p", wanted);
+  }
+  if (!possible.empty() && std::find(possible.begin(), possible.end(), format) == possible.end()) {
+    return Fail(ErrorCode::kInvalidArgument,
+                "the encoder {} does not take the pixel format {}; it takes {}", codec.name, wanted,
+                Names(possible));
+  }
+  if (!CanHaveSize(codec, format, input.width, input.height)) {
+    return Fail(ErrorCode::kInvalidArgument,
+                "{} in the pixel format {} cannot have the odd size {}x{}; leave the pixel format "
+                "out, or choose yuv444p or another --codec",
+                avcodec_get_name(codec.id), wanted, input.width, input.height);
+  }
+  return format;
+}
+
+// The format to encode in: the wanted one, else that of the input, else what comes nearest.
+Result<AVPixelFormat> ChooseFormat(const AVCodec& codec, const EncoderInput& input,
+                                   const std::string& wanted, const Logger& logger) {
   if (!wanted.empty()) {
-    const AVPixelFormat format = av_get_pix_fmt(wanted.c_str());
-    if (format == AV_PIX_FMT_NONE || sws_isSupportedOutput(format) == 0) {
-      return Fail(ErrorCode::kInvalidArgument,
-                  "'{}' is not a pixel format; examples are yuv420p, yuv422p10le, yuv444p", wanted);
-    }
-    if (!possible.empty() &&
-        std::find(possible.begin(), possible.end(), format) == possible.end()) {
-      std::vector<std::string> names;
-      for (const AVPixelFormat candidate : possible) {
-        names.push_back(FormatName(candidate));
-      }
-      return Fail(ErrorCode::kInvalidArgument,
-                  "the encoder {} does not take the pixel format {}; it takes {}", codec.name,
-                  wanted, fmt::join(names, ", "));
-    }
-    return format;
+    return WantedFormat(codec, input, wanted);
   }
+  std::vector<AVPixelFormat> possible = FormatsOf(codec);
   if (possible.empty()) {
-    return input;
+    return input.format;
   }
-  const AVPixelFormat format = NearestFormat(input, possible);
-  if (WithoutRange(format) != WithoutRange(input)) {
+  const bool takes_size = CanHaveSize(codec, input.format, input.width, input.height);
+  std::erase_if(possible, [&](AVPixelFormat format) {
+    return !CanHaveSize(codec, format, input.width, input.height);
+  });
+  const AVPixelFormat format = NearestFormat(input.format, possible);
+  if (format == AV_PIX_FMT_NONE) {
+    return Fail(ErrorCode::kUnsupported, "the encoder {} cannot write pictures of {}x{}",
+                codec.name, input.width, input.height);
+  }
+  if (!takes_size) {
+    logger->warn("{} cannot write {} pictures of the odd size {}x{}; the output is {}",
+                 avcodec_get_name(codec.id), FormatName(input.format), input.width, input.height,
+                 FormatName(format));
+  } else if (WithoutRange(format) != WithoutRange(input.format)) {
     logger->warn("the encoder {} does not take the pixel format {}; the output is {}", codec.name,
-                 FormatName(input), FormatName(format));
+                 FormatName(input.format), FormatName(format));
   }
   return format;
 }
@@ -174,7 +211,7 @@ Result<std::unique_ptr<VideoEncoder>> VideoEncoder::Open(const EncoderInput& inp
     return Propagate(settings.error());
   }
   const AVCodec* codec = avcodec_find_encoder_by_name(choice->encoder.c_str());
-  Result<AVPixelFormat> format = ChooseFormat(*codec, input.format, options.pix_fmt, *logger);
+  Result<AVPixelFormat> format = ChooseFormat(*codec, input, options.pix_fmt, *logger);
   if (!format) {
     return Propagate(format.error());
   }

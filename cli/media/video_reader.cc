@@ -246,7 +246,7 @@ void VideoReader::Impl::Describe(const AVFrame& picture, const TimestampPlan& pl
   const auto stored = static_cast<AVPixelFormat>(picture.format);
   color = ColorOf(picture, parameters);
   format = DeliveredFormat(stored);
-  if (!info.layout.is_rgb && parameters.codec_id == AV_CODEC_ID_MJPEG &&
+  if (parameters.codec_id == AV_CODEC_ID_MJPEG &&
       color.chroma_location == AVCHROMA_LOC_UNSPECIFIED) {
     color.chroma_location = AVCHROMA_LOC_CENTER;  // JFIF
   }
