@@ -17,7 +17,7 @@ install(FILES ${PROJECT_BINARY_DIR}/rsstabConfig.cmake ${PROJECT_BINARY_DIR}/rss
 # Headers that need Ceres or carry an implementation stay inside.
 install(DIRECTORY igf stabilizer DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rsstab
   COMPONENT development FILES_MATCHING PATTERN "*.h"
-  PATTERN "*_residuals.h" EXCLUDE PATTERN "*_detail.h" EXCLUDE)
+  PATTERN "street" EXCLUDE PATTERN "*_residuals.h" EXCLUDE PATTERN "*_detail.h" EXCLUDE)
 
 if(TARGET rs-stabilize)
   set(rsstab_docs ${PROJECT_BINARY_DIR}/generated/docs)
