@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <opencv2/core/eigen.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -15,8 +16,12 @@ namespace rsstab::stabilizer {
 namespace {
 
 constexpr std::size_t kFewestForDistortion = 40;
-// A homography fitted to tracks is good to a few tenths of a pixel in the corners.
+// A homography fitted to tracks is good to a few tenths of a pixel in the corners, and only near
+// the truth where the output is no homography of the input (rolling shutter corrected, mesh): so
+// many times its root mean square residual is tolerated on top.
 constexpr double kOutsidePx = 1.0;
+constexpr double kOutsideResiduals = 3.0;
+constexpr double kLargestResidualPx = 8.0;
 // In 8-bit levels: how dark an invented border is, with coding noise, and how much brighter the
 // input must be to say that it was not dark by itself.
 constexpr int kBlackSlack = 4;
@@ -70,15 +75,33 @@ cv::Mat BlackBorders(const cv::Mat& out, const cv::Mat& source, int black) {
   return borders;
 }
 
-double UndefinedShare(const cv::Mat& in, const cv::Mat& out, const Eigen::Matrix3d& in_from_out,
-                      int black) {
+// Pixels of the input's picture.
+double RmsResidual(const detail::FrameAlignment& alignment, double largest) {
+  double squares = 0.0;
+  double count = 1e-9;
+  for (const PointMatch& match : alignment.matches) {
+    const auto expected = ProjectChecked(alignment.second_from_first, match.from.cast<double>());
+    const double length = expected ? (match.to.cast<double>() - *expected).norm() : largest + 1.0;
+    if (length < largest) {
+      squares += length * length;
+      count += 1.0;
+    }
+  }
+  return std::sqrt(squares / count);
+}
+
+double UndefinedShare(const cv::Mat& in, const cv::Mat& out,
+                      const detail::FrameAlignment& alignment, int black) {
+  const Eigen::Matrix3d& in_from_out = alignment.second_from_first;
   cv::Mat map;
   cv::eigen2cv(in_from_out, map);
   cv::Mat source;  // outside the input: bright, so that black there counts
   cv::warpPerspective(in, source, map, out.size(), cv::INTER_LINEAR | cv::WARP_INVERSE_MAP,
                       cv::BORDER_CONSTANT, cv::Scalar(255));
   cv::Mat undefined = BlackBorders(out, source, black);
-  const double slack = kOutsidePx / detail::ToReference(in.cols) + 0.5;
+  const double pixel = 1.0 / detail::ToReference(in.cols);
+  const double slack = 0.5 + kOutsidePx * pixel +
+                       kOutsideResiduals * RmsResidual(alignment, kLargestResidualPx * pixel);
   for (int y = 0; y < out.rows; ++y) {
     for (int x = 0; x < out.cols; ++x) {
       const auto there = ProjectChecked(in_from_out, {x, y});
@@ -118,7 +141,7 @@ Status PairMeter::Push(const FrameView& input, const FrameView& output) {
     distortion_ = std::min(distortion_, AffineAnisotropy(centred));
     ++with_distortion_;
   }
-  const double undefined = UndefinedShare(in, out, alignment->second_from_first, BlackOf(output));
+  const double undefined = UndefinedShare(in, out, *alignment, BlackOf(output));
   undefined_sum_ += undefined;
   worst_undefined_ = std::max(worst_undefined_, undefined);
   return {};

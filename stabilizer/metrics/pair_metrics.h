@@ -23,8 +23,9 @@ struct PairMetrics {
   // matches are left out: their fit is no witness.
   std::optional<double> distortion;
   // Share of output pixels without a source in the input, mean and worst over frames. A pixel
-  // counts when its source by the homography lies more than 1 px outside the input, or when it
-  // belongs to a black area that touches the border and the input is not black there. (Content
+  // counts when its source by the homography lies outside the input by more than 1 px and three
+  // times the fit's own residual, or when it belongs to a black area that touches the border and
+  // the input is not black there. (Content
   // filled in from other frames counts too: it has no source in this one.)
   std::optional<double> undefined;
   std::optional<double> worst_undefined;
