@@ -79,7 +79,7 @@ int main() {
     // steady->planes holds the picture: show it, encode it, ...
   }
   std::printf("%lld frames steadied, at least %.0f %% of each side kept\n",
-              static_cast<long long>(found->num_frames), 100.0 * found->smallest_crop_ratio);
+              static_cast<long long>(found->num_frames), 100.0 * found->smallest_kept_ratio);
   std::filesystem::remove(analysis);
   return 0;
 }

@@ -3,6 +3,7 @@
 
 #include <zlib.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -41,6 +42,12 @@ std::uint32_t Checksum(std::span<const std::uint8_t> bytes) {
 }
 
 std::string LastError() { return std::strerror(errno); }
+
+// Linear enlargement of the picture's middle: output px a rectified px becomes, inverted.
+double ZoomRatio(const Eigen::Matrix3d& rectified_from_output) {
+  const double area = rectified_from_output.topLeftCorner<2, 2>().determinant();
+  return std::sqrt(std::abs(area)) / std::abs(rectified_from_output(2, 2));
+}
 
 void PutField(ByteSink& sink, const MotionField& field) {
   sink.Put(static_cast<std::uint16_t>(field.columns()));
@@ -94,6 +101,9 @@ nlohmann::json ToJson(const ClipAnalysis& clip) {
                          {"frames_per_second", clip.frames_per_second},
                          {"num_frames", clip.num_frames},
                          {"smallest_crop_ratio", clip.smallest_crop_ratio},
+                         {"fixed_zoom", clip.fixed_zoom},
+                         {"smallest_kept_ratio", clip.smallest_kept_ratio},
+                         {"mean_kept_ratio", clip.mean_kept_ratio},
                          {"rs_source", clip.rs_source},
                          {"rs_reason", clip.rs_reason},
                          {"readout_s", clip.readout_s},
@@ -122,6 +132,9 @@ ClipAnalysis FromJson(const nlohmann::json& json) {
   clip.frames_per_second = json.at("frames_per_second").get<double>();
   clip.num_frames = json.at("num_frames").get<std::int64_t>();
   clip.smallest_crop_ratio = json.at("smallest_crop_ratio").get<double>();
+  clip.fixed_zoom = json.at("fixed_zoom").get<bool>();
+  clip.smallest_kept_ratio = json.at("smallest_kept_ratio").get<double>();
+  clip.mean_kept_ratio = json.at("mean_kept_ratio").get<double>();
   clip.rs_source = json.at("rs_source").get<std::string>();
   clip.rs_reason = json.at("rs_reason").get<std::string>();
   clip.readout_s = json.at("readout_s").get<double>();
@@ -153,7 +166,22 @@ struct AnalysisWriter::Impl {
   FileHandle file;
   std::int64_t num_frames = 0;
   double smallest_crop_ratio = 1.0;
+  double smallest_zoom_ratio = 1.0;  // of the path updates alone
+  double sum_zoom_ratio = 0.0;
+  double smallest_kept_ratio = 1.0;
+  double sum_kept_ratio = 0.0;
   std::uint64_t offset = 0;
+
+  void Count(const FrameAnalysis& frame) {
+    ++num_frames;
+    const double zoom_ratio = ZoomRatio(frame.rectified_from_output);
+    const double kept_ratio = zoom_ratio * frame.crop_ratio;
+    smallest_crop_ratio = std::min(smallest_crop_ratio, frame.crop_ratio);
+    smallest_zoom_ratio = std::min(smallest_zoom_ratio, zoom_ratio);
+    smallest_kept_ratio = std::min(smallest_kept_ratio, kept_ratio);
+    sum_zoom_ratio += zoom_ratio;
+    sum_kept_ratio += kept_ratio;
+  }
 
   Status Write(std::span<const std::uint8_t> bytes) {
     if (std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) {
@@ -212,14 +240,21 @@ Status AnalysisWriter::Append(const FrameAnalysis& frame) {
   if (Status ok = impl_->Write(prefix.bytes()); !ok) {
     return ok;
   }
-  ++impl_->num_frames;
-  impl_->smallest_crop_ratio = std::min(impl_->smallest_crop_ratio, frame.crop_ratio);
+  impl_->Count(frame);
   return impl_->Write(body.bytes());
 }
 
 Result<ClipAnalysis> AnalysisWriter::Finish(ClipAnalysis clip) {
   clip.num_frames = impl_->num_frames;
   clip.smallest_crop_ratio = impl_->smallest_crop_ratio;
+  const auto frames = static_cast<double>(std::max<std::int64_t>(impl_->num_frames, 1));
+  if (clip.fixed_zoom) {
+    clip.smallest_kept_ratio = impl_->smallest_zoom_ratio * impl_->smallest_crop_ratio;
+    clip.mean_kept_ratio = impl_->sum_zoom_ratio * impl_->smallest_crop_ratio / frames;
+  } else {
+    clip.smallest_kept_ratio = impl_->smallest_kept_ratio;
+    clip.mean_kept_ratio = impl_->sum_kept_ratio / frames;
+  }
   // Names and reasons may hold any bytes; JSON wants UTF-8.
   const std::string text =
       ToJson(clip).dump(1, ' ', false, nlohmann::json::error_handler_t::replace);

@@ -25,7 +25,7 @@ struct FrameAnalysis {
   bool path_begins = false;
   // Planned crop ratio with adaptive zoom, in (0, 1].
   double crop_ratio = 1.0;
-  // Path update without crop, normalised coordinates (camera_path.h).
+  // Path update, normalised coordinates (camera_path.h); the zoom in it comes on top of the crop.
   Eigen::Matrix3d rectified_from_output = Eigen::Matrix3d::Identity();
   // Local path update, px of the analysed size; default-made = none.
   MotionField mesh_update;
@@ -40,9 +40,13 @@ struct ClipAnalysis {
   int height = 0;
   double frames_per_second = 0.0;
   std::int64_t num_frames = 0;
-  double smallest_crop_ratio = 1.0;  // over all frames: what one fixed zoom has to be
-  std::string rs_source = "none";    // "gyro", "none", ...
-  std::string rs_reason;             // why that source, one sentence
+  // Smallest crop_ratio over all frames: the one that a fixed zoom has to use throughout.
+  double smallest_crop_ratio = 1.0;
+  bool fixed_zoom = false;           // one crop for all frames instead of each frame's own
+  double smallest_kept_ratio = 1.0;  // share of a side that the most enlarged frame shows
+  double mean_kept_ratio = 1.0;
+  std::string rs_source = "none";  // "gyro", "none", ...
+  std::string rs_reason;           // why that source, one sentence
   double readout_s = 0.0;
   std::optional<double> gyro_offset_s;
   std::optional<Camera> camera;  // of the analysed size
@@ -63,7 +67,7 @@ class AnalysisWriter {
   AnalysisWriter& operator=(const AnalysisWriter&) = delete;
 
   [[nodiscard]] Status Append(const FrameAnalysis& frame);
-  // Completes the file; num_frames and smallest_crop_ratio are filled in here. Returns what was
+  // Completes the file; num_frames and the ratios are filled in here. Returns what was
   // written.
   [[nodiscard]] Result<ClipAnalysis> Finish(ClipAnalysis clip);
 

@@ -17,8 +17,8 @@ namespace {
 
 // The smoother passes |P| = |C| / (1 + (w/w2)^4 + (w/w3)^6) of a motion of angular frequency w;
 // w2 and w3 are these shares of 2 pi / smoothness_s.
-constexpr double kAccelerationCutoff = 0.25;
-constexpr double kJerkCutoff = 0.30;
+constexpr double kAccelerationCutoff = 0.20;
+constexpr double kJerkCutoff = 0.25;
 // A fast pan is meant: smoothing relaxes by exp(-(speed / kPanSpeed)^2), the Gaussian in path
 // difference of Liu et al. 2013, eq. 2. Widths per second, of the motion averaged over kPanWindowS.
 constexpr double kPanSpeed = 0.9;
@@ -31,17 +31,20 @@ constexpr double kZoomReluctance = 1.0 * kReferenceWidthPx;
 constexpr double kStretchReluctance = 10.0 * kReferenceWidthPx;
 // The same when a sensor knows the turn: the tracks' noise must not leak into the picture's shape.
 constexpr double kKnownRotationFactor = 100.0;
-// Every pixel that the corners of the whole picture move outwards must be hidden by zooming, so it
-// costs this much more than moving inwards. Measured on four shaky clips: with 4 instead of 0 the
-// kept share of a side rises from 0.82 to 0.86, 0.86 to 0.90, 0.88 to 0.92 and 0.93 to 0.95, at 5
-// to 15% more remaining shake.
-constexpr double kBorderWeight = 4.0;
-// The crop limit is a penalty on the corners that leave the picture, raised tenfold until none
-// leaves it by more than kMaxCropViolation.
+// With adaptive zoom the update's zoom hides the borders: corners that leave the picture cost
+// kBorderWeight a pixel, zooming in kZoomCost a unit of log zoom (px), and how fast it may change
+// follows from the smoothness of the output's motion, as for every other move.
+constexpr double kBorderWeight = 60.0;
+constexpr double kZoomCost = 2.0 * kReferenceWidthPx;
+// The crop limit is a penalty, raised tenfold until it is exceeded by no more than
+// kMaxCropViolation.
 constexpr double kCropWeight = 10.0;
 constexpr int kMaxCropRaises = 4;
 constexpr double kMaxCropViolation = 0.5 / kReferenceWidthPx;
 constexpr double kTripodWeight = 300.0;
+// Pull of the smooth path to the camera's own: weak, since the border keeps them together.
+constexpr double kDataWeight = 0.5;
+constexpr double kTripodDataWeight = 0.05;
 // Local paths: highest mode, pull to the camera's own local path, neighbour term.
 constexpr int kMaxModeOrder = 5;
 constexpr double kLocalDataWeight = 2.0;
@@ -211,7 +214,8 @@ class CeresPathSmoother final : public PathSmoother {
 
   // Normalised distance by which the crop window of an open frame leaves the picture.
   [[nodiscard]] double LargestCropViolation() const {
-    const CropResidual crop{options_.focal_ratio, 1.0, options_.min_crop_ratio, options_.aspect};
+    const CropResidual crop{options_.focal_ratio, 1.0, options_.min_crop_ratio, options_.aspect,
+                            false};
     double worst = 0.0;
     for (std::size_t i = decided_; i < nodes_.size(); ++i) {
       std::array<double, CropResidual::kSize> overhang{};
@@ -221,6 +225,19 @@ class CeresPathSmoother final : public PathSmoother {
       }
     }
     return worst;
+  }
+
+  void AddCropResiduals(ceres::Problem& problem, double crop_weight, Theta& theta) const {
+    using CropCost = ceres::AutoDiffCostFunction<CropResidual, CropResidual::kSize, kUpdateSize>;
+    const double f = options_.focal_ratio;
+    problem.AddResidualBlock(new CropCost(new CropResidual{f, crop_weight, options_.min_crop_ratio,
+                                                           options_.aspect, false}),
+                             nullptr, theta.data());
+    if (options_.adaptive_zoom) {
+      problem.AddResidualBlock(
+          new CropCost(new CropResidual{f, kBorderWeight, 1.0, options_.aspect, true}), nullptr,
+          theta.data());
+    }
   }
 
   Status SolveGlobal(double crop_weight) {
@@ -233,27 +250,20 @@ class CeresPathSmoother final : public PathSmoother {
         problem.SetParameterBlockConstant(nodes_[i].theta.data());
         continue;
       }
-      DataResidual data{points_, f, options_.tripod ? 0.05 : 1.0, {}};
+      DataResidual data{points_, f, options_.tripod ? kTripodDataWeight : kDataWeight, {}};
       data.reluctance = {0.0,
                          0.0,
                          0.0,
                          known * kShiftReluctance,
                          known * kShiftReluctance,
-                         known * kZoomReluctance,
+                         options_.adaptive_zoom ? kZoomCost : known * kZoomReluctance,
                          known * kStretchReluctance,
                          known * kStretchReluctance};
       problem.AddResidualBlock(
           new ceres::AutoDiffCostFunction<DataResidual, DataResidual::kSize, kUpdateSize>(
               new DataResidual(data)),
           nullptr, nodes_[i].theta.data());
-      for (const CropResidual& crop :
-           {CropResidual{f, kBorderWeight, 1.0, options_.aspect},
-            CropResidual{f, crop_weight, options_.min_crop_ratio, options_.aspect}}) {
-        problem.AddResidualBlock(
-            new ceres::AutoDiffCostFunction<CropResidual, CropResidual::kSize, kUpdateSize>(
-                new CropResidual(crop)),
-            nullptr, nodes_[i].theta.data());
-      }
+      AddCropResiduals(problem, crop_weight, nodes_[i].theta);
       if (options_.tripod && i >= 1) {
         problem.AddResidualBlock(
             new ceres::AutoDiffCostFunction<VelocityResidual, VelocityResidual::kSize, kUpdateSize,

@@ -5,6 +5,7 @@
 #include <ceres/rotation.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 
 #include "stabilizer/normalized_coordinates.h"
@@ -18,6 +19,7 @@ namespace rsstab::stabilizer {
 // A turn (w) keeps the perspective right for a real camera; shift, zoom (s) and stretch (a, b) are
 // what a turn cannot tell.
 inline constexpr int kUpdateSize = 8;
+inline constexpr std::size_t kZoomIndex = 5;  // s; negative = zoomed in
 using UpdateParameters = std::array<double, kUpdateSize>;
 
 template <typename T>
@@ -80,8 +82,8 @@ template <typename T>
   return ApplyInverseUpdate<T>(theta_next, focal_ratio, in_next);
 }
 
-// |P(t) - C(t)|: how far the update moves the picture; plus the reluctance to use anything but a
-// turn.
+// |P(t) - C(t)|: how far the update moves the picture (zoom apart: that is what hides borders, and
+// has a price of its own); plus the reluctance to use anything but a turn.
 struct DataResidual {
   PathPoints points;
   double focal_ratio = 0.8;
@@ -92,8 +94,11 @@ struct DataResidual {
 
   template <typename T>
   bool operator()(const T* theta, T* residual) const {
+    std::array<T, kUpdateSize> unzoomed;
+    std::copy(theta, theta + kUpdateSize, unzoomed.begin());
+    unzoomed[kZoomIndex] = T(0.0);
     for (std::size_t i = 0; i < kNumPathPoints; ++i) {
-      const Point2<T> moved = ApplyUpdate<T>(theta, focal_ratio, points[i].cast<T>());
+      const Point2<T> moved = ApplyUpdate<T>(unzoomed.data(), focal_ratio, points[i].cast<T>());
       const Point2<T> r = (moved - points[i].cast<T>()) * T(weight * kReferenceWidthPx);
       residual[2 * i] = r.x();
       residual[2 * i + 1] = r.y();
@@ -176,12 +181,14 @@ struct VelocityResidual {
   }
 };
 
-// How far the corners of the crop window leave the picture. Zero inside.
+// How far the corners of a centred window leave the picture, seen through the update with or
+// without its zoom. Zero inside.
 struct CropResidual {
   double focal_ratio = 0.8;
   double weight = 1.0;
   double crop_ratio = 0.8;
   double aspect = 9.0 / 16.0;
+  bool with_zoom = false;
 
   static constexpr int kSize = 8;
 
@@ -190,8 +197,13 @@ struct CropResidual {
     const double x = 0.5 * crop_ratio;
     const double y = 0.5 * crop_ratio * aspect;
     const std::array<Eigen::Vector2d, 4> corners = {{{-x, -y}, {x, -y}, {-x, y}, {x, y}}};
+    std::array<T, kUpdateSize> update;
+    std::copy(theta, theta + kUpdateSize, update.begin());
+    if (!with_zoom) {
+      update[kZoomIndex] = T(0.0);
+    }
     for (std::size_t i = 0; i < corners.size(); ++i) {
-      const Point2<T> moved = ApplyUpdate<T>(theta, focal_ratio, corners[i].cast<T>());
+      const Point2<T> moved = ApplyUpdate<T>(update.data(), focal_ratio, corners[i].cast<T>());
       residual[2 * i] = Overhang(moved.x(), 0.5);
       residual[2 * i + 1] = Overhang(moved.y(), 0.5 * aspect);
     }

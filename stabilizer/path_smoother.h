@@ -16,7 +16,10 @@ struct PathSmootherOptions {
   double smoothness_s = 1.0;  // features of the path shorter than this are taken out; 0 = none
   bool tripod = false;        // stand still as far as the crop allows
   double min_crop_ratio =
-      0.8;                   // the path keeps a window of this share of a side inside the picture
+      0.8;  // the path keeps a window of this share of a side inside the picture
+  // True: the update zooms in as far as each moment needs, within min_crop_ratio. False: it never
+  // does; one crop for the whole clip hides the borders.
+  bool adaptive_zoom = true;
   double focal_ratio = 0.8;  // focal length / picture width: shape of the perspective of a turn
   // True when the motion comes from a sensor that knows rotations (a gyro): the update is then a
   // rotation, and zoom and shift only mop up.

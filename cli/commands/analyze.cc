@@ -26,7 +26,7 @@ Status RunAnalyze(const Invocation& invocation, const CommandContext& context) {
     return Propagate(analysis.error());
   }
   context.logger->info("{}: {} frames analysed, smallest crop ratio {:.3f}", analysis_file,
-                       analysis->num_frames, analysis->smallest_crop_ratio);
+                       analysis->num_frames, analysis->smallest_kept_ratio);
   return {};
 }
 

@@ -41,7 +41,7 @@ Status RunStabilize(const Invocation& invocation, const CommandContext& context)
     return status;
   }
   context.logger->info("{} frames done; at least {:.1f} % of each side was kept",
-                       analysis->num_frames, 100.0 * analysis->smallest_crop_ratio);
+                       analysis->num_frames, 100.0 * analysis->smallest_kept_ratio);
   return {};
 }
 

@@ -184,6 +184,7 @@ Result<stabilizer::ClipAnalysis> Analyzer::Finish(const std::function<bool()>& c
   clip.height = s.clip.height;
   clip.frames_per_second = s.clip.frames_per_second;
   clip.num_frames = s.num_frames;
+  clip.fixed_zoom = s.options.zoom == ZoomMode::kFixed || s.options.tripod;
   clip.rs_source = s.selection.source ? s.selection.source->Name() : "none";
   clip.rs_reason = s.selection.reason;
   clip.readout_s = s.selection.readout_s;

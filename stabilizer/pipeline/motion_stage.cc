@@ -21,8 +21,9 @@ using stabilizer::FrameAnalysis;
 using stabilizer::MotionRung;
 using stabilizer::RectifiedMatch;
 
-// Zoom may change over this long to either side of a frame that needs it.
-constexpr double kZoomReachS = 0.8;
+// The smoother's zoom hides most of every border; what is left is planned over this long to either
+// side of a frame that needs it.
+constexpr double kZoomReachS = 0.4;
 // Focal length where nobody knows it, in picture widths (64 degrees): phones and action cameras in
 // their linear modes lie between 0.6 and 1.0.
 constexpr double kDefaultFocalRatio = 0.8;
@@ -43,6 +44,7 @@ stabilizer::PathSmootherOptions SmootherOptions(const StabilizeOptions& options,
   }
   smoother.focal_ratio =
       selection.camera ? selection.camera->fx / selection.camera->width : kDefaultFocalRatio;
+  smoother.adaptive_zoom = options.zoom == ZoomMode::kAdaptive && !options.tripod;
   smoother.rotation_known = selection.source != nullptr && selection.source->Name() == "gyro";
   smoother.mesh_columns = options.mesh_columns;
   smoother.mesh_rows = options.mesh_rows;

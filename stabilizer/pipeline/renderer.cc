@@ -48,7 +48,7 @@ struct Renderer::Impl {
   [[nodiscard]] stabilizer::BackwardMap Compose(const stabilizer::FrameAnalysis& frame) const {
     const stabilizer::ClipAnalysis& clip = reader->clip();
     const stabilizer::FrameWarp warp = AssembleWarp(frame, clip.width, clip.height, clip.camera);
-    double crop = options.zoom == ZoomMode::kFixed ? clip.smallest_crop_ratio : frame.crop_ratio;
+    double crop = clip.fixed_zoom ? clip.smallest_crop_ratio : frame.crop_ratio;
     stabilizer::BackwardMap map =
         stabilizer::ComposeBackwardMap(stabilizer::WithCrop(warp, crop), grid);
     for (int step = 0; step < kMaxCropSteps && stabilizer::OverhangPx(map) > kRoundOffPx; ++step) {

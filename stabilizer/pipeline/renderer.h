@@ -18,7 +18,7 @@ namespace rsstab::pipeline {
 // thread safe (uses its own worker threads inside).
 class Renderer {
  public:
-  // Takes zoom mode, interpolation and threads from `options`; the rest was decided in pass 1.
+  // Takes interpolation and threads from `options`; the rest was decided in pass 1.
   // Errors: those of AnalysisReader::Open; kInvalidArgument when the clip has another size.
   [[nodiscard]] static Result<std::unique_ptr<Renderer>> Create(const StabilizeOptions& options,
                                                                 const std::string& analysis_path,

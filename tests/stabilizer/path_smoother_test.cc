@@ -117,6 +117,7 @@ TEST(PathSmoother, TakesShakeOutAndKeepsSlowMotion) {
 TEST(PathSmoother, AnUpdateIsACameraTurnWhereTurnsAreKnown) {
   PathSmootherOptions options = Options();
   options.rotation_known = true;
+  options.adaptive_zoom = false;
   options.focal_ratio = 0.9;
   const Eigen::Vector3d k(0.9, 0.9, 1.0);
   std::vector<FrameMotion> motions(150);
@@ -145,10 +146,35 @@ TEST(PathSmoother, KeepsTheCropWindowInsideThePicture) {
   PathSmootherOptions options = Options();
   options.smoothness_s = 5.0;
   options.min_crop_ratio = 0.8;
+  options.adaptive_zoom = false;
   for (const PathUpdate& u : Smooth(options, motions)) {
     const double edge = Project(u.rectified_from_output, {0.4, 0.0}).x();
     EXPECT_LT(edge, 0.5 + 2.0 * kPx);
     EXPECT_GT(Project(u.rectified_from_output, {-0.4, 0.0}).x(), -0.5 - 2.0 * kPx);
+  }
+}
+
+TEST(PathSmoother, ZoomsInWhereBordersWouldShowAndOnlyThere) {
+  // Still for 10 s but for a shaky second in the middle.
+  const auto motions = Shifting(300, [](int t) {
+    const double envelope = std::exp(-std::pow((t - 150.0) / 15.0, 2.0));
+    return Eigen::Vector2d(25.0 * kPx * envelope * std::sin(1.1 * t), 0.0);
+  });
+  const auto updates = Smooth(Options(), motions);
+  const auto zoom = [&](std::size_t t) {
+    const Eigen::Matrix3d& u = updates[t].rectified_from_output;
+    return std::sqrt(u.topLeftCorner<2, 2>().determinant()) / u(2, 2);
+  };
+  EXPECT_LT(zoom(150), 0.97);
+  EXPECT_GT(zoom(150), 0.80);
+  EXPECT_GT(zoom(20), 0.995);
+  EXPECT_GT(zoom(280), 0.995);
+  for (std::size_t t = 1; t < updates.size(); ++t) {
+    EXPECT_LT(std::abs(zoom(t) - zoom(t - 1)), 0.006) << t;
+  }
+  // What is left for the crop planner is a few pixels.
+  for (const PathUpdate& u : updates) {
+    EXPECT_LT(Project(u.rectified_from_output, {0.5, 0.0}).x(), 0.5 + 4.0 * kPx);
   }
 }
 
@@ -279,7 +305,7 @@ TEST(PathResiduals, DerivativesAreRight) {
   CheckGradient<VelocityResidual, 8, 8>(new VelocityResidual{points, 0.8, 2.0, f});
   CheckGradient<AccelerationResidual, 8, 8, 8>(new AccelerationResidual{points, 0.8, 2.0, f, f});
   CheckGradient<JerkResidual, 8, 8, 8, 8>(new JerkResidual{points, 0.8, 2.0, f, f, f});
-  CheckGradient<CropResidual, 8>(new CropResidual{0.8, 3.0, 1.3, 0.5625});
+  CheckGradient<CropResidual, 8>(new CropResidual{0.8, 3.0, 1.3, 0.5625, true});
 }
 
 }  // namespace
