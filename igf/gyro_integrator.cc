@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <utility>
 #include <vector>
@@ -16,6 +17,58 @@ constexpr std::size_t kHalfStencil = 4;
 // A polynomial of degree seven swings between unevenly spaced nodes; beyond this ratio of the
 // longest to the shortest interval a straight line is the safer guess.
 constexpr double kMaxUnevenness = 1.5;
+// A low pass nearer to the sampling rate has too few samples under its kernel.
+constexpr double kMinOversampling = 3.0;
+
+// Windowed-sinc low pass (three lobes of Lanczos), zero phase, weights normalised, so that a steady
+// rate stays and uneven times are tolerated. `run` has no gap.
+std::vector<GyroSample> LowPassed(std::span<const GyroSample> run, double cutoff_hz) {
+  constexpr double kLobes = 3.0;
+  const auto sinc = [](double x) {
+    const double a = std::numbers::pi * x;
+    return std::abs(a) < 1e-6 ? 1.0 : std::sin(a) / a;
+  };
+  // The kernel's zeros lie 1 / (2 cutoff) apart.
+  const double reach_s = kLobes / (2.0 * cutoff_hz);
+  std::vector<GyroSample> result(run.begin(), run.end());
+  std::size_t begin = 0;
+  for (GyroSample& sample : result) {
+    while (run[begin].time_s <= sample.time_s - reach_s) {
+      ++begin;
+    }
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double weights = 0.0;
+    for (std::size_t i = begin; i < run.size() && run[i].time_s < sample.time_s + reach_s; ++i) {
+      const double x = (run[i].time_s - sample.time_s) * 2.0 * cutoff_hz;
+      const double weight = sinc(x) * sinc(x / kLobes);
+      sum += weight * run[i].rate_rad_s;
+      weights += weight;
+    }
+    sample.rate_rad_s = sum / weights;
+  }
+  return result;
+}
+
+// LowPassed on every stretch between gaps.
+std::vector<GyroSample> LowPassedLog(const GyroLog& log, double cutoff_hz) {
+  const std::span<const GyroSample> samples = log.samples();
+  std::vector<GyroSample> result;
+  result.reserve(samples.size());
+  const auto append_until = [&](std::size_t end) {
+    const auto run = samples.subspan(result.size(), end - result.size());
+    const std::vector<GyroSample> filtered = LowPassed(run, cutoff_hz);
+    result.insert(result.end(), filtered.begin(), filtered.end());
+  };
+  std::size_t next = 0;
+  for (const GyroGap& gap : log.gaps()) {
+    while (next < samples.size() && samples[next].time_s < gap.end_s) {
+      ++next;
+    }
+    append_until(next);
+  }
+  append_until(samples.size());
+  return result;
+}
 
 // Rate at `time_s` between samples i and i + 1.
 class RateInterpolator {
@@ -73,7 +126,16 @@ Result<OrientationTrack> IntegrateGyro(const GyroLog& log, const GyroIntegration
   if (!options.bias_rad_s.allFinite()) {
     return Fail(ErrorCode::kInvalidArgument, "the gyro bias must be three finite numbers");
   }
-  const std::span<const GyroSample> samples = log.samples();
+  if (!(options.low_pass_hz >= 0.0) || !std::isfinite(options.low_pass_hz)) {
+    return Fail(ErrorCode::kInvalidArgument, "a low pass of {} Hz must be 0 (off) or positive",
+                options.low_pass_hz);
+  }
+  std::span<const GyroSample> samples = log.samples();
+  std::vector<GyroSample> filtered;
+  if (options.low_pass_hz > 0.0 && log.mean_rate_hz() >= kMinOversampling * options.low_pass_hz) {
+    filtered = LowPassedLog(log, options.low_pass_hz);
+    samples = filtered;
+  }
   std::vector<TimeSpan> gaps;
   for (const GyroGap& gap : log.gaps()) {
     gaps.push_back({gap.begin_s, gap.end_s});

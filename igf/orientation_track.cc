@@ -83,6 +83,16 @@ std::optional<Eigen::Vector3d> OrientationTrack::MeanRate(double from_s, double 
          (to_s - from_s);
 }
 
+OrientationAnchor OrientationTrack::AnchorAt(double time_s) const {
+  // Not std::clamp: NaN must end up inside, too.
+  const double t = std::max(times_s_.front(), std::min(time_s - offset_s_, times_s_.back()));
+  const std::size_t i = t < times_s_.back() ? IntervalAt(t) : times_s_.size() - 2;
+  const Eigen::Quaterniond& q = world_from_camera_[i];
+  return {times_s_[i] + offset_s_, q,
+          LogSo3(Eigen::Quaterniond(q.conjugate() * world_from_camera_[i + 1])) /
+              (times_s_[i + 1] - times_s_[i])};
+}
+
 OrientationTrack OrientationTrack::WithOffset(double offset_s) const {
   OrientationTrack shifted = *this;
   shifted.offset_s_ += offset_s;

@@ -18,6 +18,15 @@ struct TimeSpan {
   double end_s = 0.0;
 };
 
+// A sample and the constant body rate that leads from it to the next one:
+//   world_from_camera(t) = world_from_camera * exp(rate_rad_s (t - time_s)).
+// What a solver needs to differentiate an orientation by its time.
+struct OrientationAnchor {
+  double time_s = 0.0;
+  Eigen::Quaterniond world_from_camera = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();
+};
+
 // Where a camera looked, as a function of time: samples joined by SLERP (constant rate about a
 // fixed axis between two samples). Valid over the half-open span [start_s(), end_s()), so that two
 // tracks laid end to end cover every instant exactly once; less the inside of gaps, where nobody
@@ -57,6 +66,10 @@ class OrientationTrack {
   // the constant body rate that leads from one orientation to the other. Empty unless to_s > from_s
   // and Covers(from_s, to_s).
   [[nodiscard]] std::optional<Eigen::Vector3d> MeanRate(double from_s, double to_s) const;
+
+  // The sample interval that holds `time_s`; the first or last one for a time outside the span.
+  // Asks nothing about gaps.
+  [[nodiscard]] OrientationAnchor AnchorAt(double time_s) const;
 
   // The same motion on a clock that shows `offset_s` more: t_video = t_gyro + offset_s.
   [[nodiscard]] OrientationTrack WithOffset(double offset_s) const;

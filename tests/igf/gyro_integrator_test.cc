@@ -107,9 +107,30 @@ TEST(GyroIntegrator, GapsOfTheLogAreGapsOfTheTrack) {
   EXPECT_NEAR(track.MeanRate(1.21, 2.1)->y(), 1.0, 1e-9);
 }
 
+// A propeller at 160 Hz goes, a hand's tremor and a 50 Hz vibration stay, on time.
+TEST(GyroIntegrator, LowPassTakesOutWhatNoPictureShows) {
+  constexpr double kAmplitude = 0.01;  // rad
+  const auto swing = [](double frequency_hz, double low_pass_hz) {
+    const double w = 2.0 * std::numbers::pi * frequency_hz;
+    const OrientationTrack track = *IntegrateGyro(
+        Sampled(
+            400.0, 1.0,
+            [&](double t) { return Eigen::Vector3d(0.0, kAmplitude * w * std::cos(w * t), 0.0); }),
+        {.low_pass_hz = low_pass_hz});
+    // Quarter-period instants, so that a delay would show as a smaller swing.
+    const double top = (std::round(0.5 * frequency_hz) + 0.25) / frequency_hz;
+    const double bottom = top + 0.5 / frequency_hz;
+    return LogSo3(*track.CameraFromWorld(bottom)).y() - LogSo3(*track.CameraFromWorld(top)).y();
+  };
+  EXPECT_NEAR(swing(8.0, 100.0), 2.0 * kAmplitude, 0.02 * kAmplitude);
+  EXPECT_NEAR(swing(50.0, 100.0), swing(50.0, 0.0), 0.1 * kAmplitude);
+  EXPECT_NEAR(swing(160.0, 100.0), 0.0, 0.2 * kAmplitude);
+}
+
 TEST(GyroIntegrator, RefusesBadOptions) {
   const GyroLog log = Sampled(200.0, 1.0, [](double) { return Eigen::Vector3d::Zero().eval(); });
   EXPECT_FALSE(IntegrateGyro(log, {.max_step_s = 0.0}));
+  EXPECT_FALSE(IntegrateGyro(log, {.low_pass_hz = -1.0}));
   GyroIntegrationOptions options;
   options.bias_rad_s.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(IntegrateGyro(log, options));

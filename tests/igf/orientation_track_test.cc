@@ -100,6 +100,20 @@ TEST(OrientationTrack, MeanRateIsTheBodyRate) {
   EXPECT_FALSE(track.MeanRate(0.2, 0.5));
 }
 
+TEST(OrientationTrack, AnchorContinuesToTheNextSample) {
+  const Eigen::Vector3d rate(0.3, -0.7, 0.2);
+  const OrientationTrack track = ConstantRate(rate, {0.0, 0.1, 0.2, 0.3}).WithOffset(1.0);
+  const OrientationAnchor anchor = track.AnchorAt(1.15);
+  EXPECT_NEAR(anchor.time_s, 1.1, 1e-12);
+  EXPECT_LT((anchor.rate_rad_s - rate).norm(), 1e-9);
+  const Eigen::Quaterniond continued =
+      anchor.world_from_camera *
+      ExpSo3(Eigen::Vector3d(anchor.rate_rad_s * (1.15 - anchor.time_s)));
+  EXPECT_LT(continued.conjugate().angularDistance(*track.CameraFromWorld(1.15)), 1e-7);
+  EXPECT_NEAR(track.AnchorAt(0.0).time_s, 1.0, 1e-12);
+  EXPECT_NEAR(track.AnchorAt(9.0).time_s, 1.2, 1e-12);
+}
+
 TEST(OrientationTrack, CreateNamesTheBrokenSample) {
   const Eigen::Quaterniond one = Eigen::Quaterniond::Identity();
   EXPECT_FALSE(OrientationTrack::Create({0.0}, {one}));
