@@ -25,8 +25,8 @@ struct PairMetrics {
   // Share of output pixels without a source in the input, mean and worst over frames. A pixel
   // counts when its source by the homography lies outside the input by more than 1 px and three
   // times the fit's own residual, or when it belongs to a black area that touches the border and
-  // the input is not black there. (Content
-  // filled in from other frames counts too: it has no source in this one.)
+  // the input is not black there. Content filled in from other frames counts too: it has no
+  // source in this one.
   std::optional<double> undefined;
   std::optional<double> worst_undefined;
 };
