@@ -15,8 +15,8 @@
 namespace rsstab::stabilizer {
 namespace {
 
-// The smoother passes |P| = |C| / (1 + (w/w2)^4 + (w/w3)^6) of a motion of angular frequency w;
-// w2 and w3 are these shares of 2 pi / smoothness_s.
+// Away from borders the smoother passes |P| = |C| / (1 + ((w/w2)^4 + (w/w3)^6) / kDataWeight^2) of
+// a motion of angular frequency w; w2 and w3 are these shares of 2 pi / smoothness_s.
 constexpr double kAccelerationCutoff = 0.20;
 constexpr double kJerkCutoff = 0.25;
 // A fast pan is meant: smoothing relaxes by exp(-(speed / kPanSpeed)^2), the Gaussian in path
