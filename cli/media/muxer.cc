@@ -20,6 +20,7 @@ namespace rsstab::media {
 namespace {
 
 constexpr int kIoBufferBytes = 1 << 18;
+constexpr int kOpusRate = 48000;  // whatever the sound's own
 
 int WriteBytes(void* opaque, std::uint8_t* data, int size) {
   const int code = static_cast<OutputFile*>(opaque)->Write(data, static_cast<std::size_t>(size));
@@ -44,9 +45,6 @@ bool IsNamed(const AVOutputFormat& format, std::initializer_list<std::string_vie
 bool IsMp4Like(const AVOutputFormat& format) {
   return IsNamed(format, {"mp4", "mov", "ipod", "ismv", "3gp", "3g2"});
 }
-
-// Formats without time stamps of their own show frame n at n periods, so their tick is the period.
-bool IsConstantRateOnly(const AVOutputFormat& format) { return IsNamed(format, {"avi"}); }
 
 // A display matrix for a plain turn.
 int AddRotation(double degrees, AVStream& stream) {
@@ -90,6 +88,8 @@ void FillOptions(const AVOutputFormat& format, bool can_seek, bool has_special_m
 }
 
 }  // namespace
+
+bool HoldsConstantRateOnly(const AVOutputFormat& format) { return IsNamed(format, {"avi"}); }
 
 Result<const AVOutputFormat*> ChooseContainer(const std::string& path, const std::string& format) {
   if (!format.empty()) {
@@ -146,6 +146,12 @@ Result<std::unique_ptr<Muxer>> Muxer::Open(OutputFile& file, const AVOutputForma
     logger->warn("{}: a '{}' file cannot hold these, they are left out: {}", file.path(),
                  format.name, fmt::join(muxer->left_out_, ", "));
   }
+  if (video.has_variable_rate && HoldsConstantRateOnly(format)) {
+    logger->warn(
+        "{}: a '{}' file shows frames at constant rate, the clip's rate varies; .mp4 and "
+        ".mkv keep the times",
+        file.path(), format.name);
+  }
   return muxer;
 }
 
@@ -180,6 +186,7 @@ int Muxer::Start(const AVOutputFormat& format, const MuxerVideo& video, const So
     return AVERROR(ENOMEM);
   }
   context->pb = io_;
+  keeps_zero_ = IsNamed(format, {"matroska", "webm"}) && !video.starts_before_zero;
 
   int code = 0;
   if (source == nullptr) {
@@ -225,6 +232,9 @@ int Muxer::Start(const AVOutputFormat& format, const MuxerVideo& video, const So
     return code;
   }
   AvDictionary dictionary;
+  if (keeps_zero_) {
+    context->avoid_negative_ts = AVFMT_AVOID_NEG_TS_DISABLED;
+  }
   FillOptions(format, file_.can_seek(), HasSpecialMetadata(context->metadata), video_time_base_,
               options, dictionary);
   code = avformat_write_header(context, dictionary.address());
@@ -247,7 +257,7 @@ int Muxer::AddVideo(const MuxerVideo& video, const SourceAccess* source) {
   video_time_base_ = {video.time_base.num, video.time_base.den};
   const AVRational frame_rate = {video.frame_rate.num, video.frame_rate.den};
   stream->time_base =
-      IsConstantRateOnly(*output_->oformat) ? av_inv_q(frame_rate) : video_time_base_;
+      HoldsConstantRateOnly(*output_->oformat) ? av_inv_q(frame_rate) : video_time_base_;
   stream->avg_frame_rate = frame_rate;
   stream->sample_aspect_ratio = video.encoder->sample_aspect_ratio;
   if (const int code = avcodec_parameters_from_context(stream->codecpar, video.encoder); code < 0) {
@@ -348,6 +358,14 @@ Status Muxer::WriteCopied(AVPacket& packet) {
     packet.dts -= shift;
   }
   av_packet_rescale_ts(&packet, copied.source_time_base, stream.time_base);
+  const AVCodecParameters& parameters = *stream.codecpar;
+  if (keeps_zero_ && parameters.codec_id == AV_CODEC_ID_OPUS && parameters.initial_padding > 0) {
+    // libav's muxer writes the delay that readers subtract, but does not add it to the times.
+    const std::int64_t delay =
+        av_rescale_q(parameters.initial_padding, AVRational{1, kOpusRate}, stream.time_base);
+    packet.pts += packet.pts != AV_NOPTS_VALUE ? delay : 0;
+    packet.dts += packet.dts != AV_NOPTS_VALUE ? delay : 0;
+  }
   if (packet.dts == AV_NOPTS_VALUE) {
     packet.dts = packet.pts != AV_NOPTS_VALUE ? packet.pts : copied.last_dts.value_or(-1) + 1;
   }
@@ -358,6 +376,10 @@ Status Muxer::WriteCopied(AVPacket& packet) {
   }
   if (packet.pts == AV_NOPTS_VALUE || packet.pts < packet.dts) {
     packet.pts = packet.dts;
+  }
+  if (keeps_zero_ && parameters.codec_type != AVMEDIA_TYPE_AUDIO && packet.dts < 0) {
+    packet.dts = 0;
+    packet.pts = std::max<std::int64_t>(packet.pts, 0);
   }
   copied.last_dts = packet.dts;
   packet.stream_index = copied.output_index;

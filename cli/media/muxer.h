@@ -25,11 +25,17 @@ namespace rsstab::media {
 [[nodiscard]] Result<const AVOutputFormat*> ChooseContainer(const std::string& path,
                                                             const std::string& format);
 
+// Whether frame n is shown after n periods, whatever its time: such a file has the period as its
+// tick, and no place for frames in another order than that of their display.
+[[nodiscard]] bool HoldsConstantRateOnly(const AVOutputFormat& format);
+
 // What the video stream is, apart from what the encoder says.
 struct MuxerVideo {
   const AVCodecContext* encoder = nullptr;
-  Rational time_base;             // of the packets given to WriteVideo()
-  Rational frame_rate;            // mean
+  Rational time_base;   // of the packets given to WriteVideo()
+  Rational frame_rate;  // mean
+  bool has_variable_rate = false;
+  bool starts_before_zero = false;
   double rotation_degrees = 0.0;  // without a source
   KeyValueList metadata;          // of the file, without a source
 };
@@ -78,7 +84,7 @@ class Muxer {
                           const SourceAccess* source, const WriterOptions& options, Scope scope,
                           std::string& unknown_option);
   [[nodiscard]] int AddVideo(const MuxerVideo& video, const SourceAccess* source);
-  [[nodiscard]] int AddCopied(const AVStream& stream);
+  [[nodiscard]] int AddCopied(const AVStream& source);
   [[nodiscard]] int CopyChapters(const AVFormatContext& input);
   [[nodiscard]] int Write(AVPacket& packet);
   [[nodiscard]] Error WriteError(int code) const;
@@ -89,7 +95,10 @@ class Muxer {
   AVIOContext* io_ = nullptr;
   int video_index_ = 0;
   AVRational video_time_base_{1, 1};
-  std::int64_t source_start_ = 0;              // taken from all times, AV_TIME_BASE units
+  std::int64_t source_start_ = 0;  // taken from all times, AV_TIME_BASE units
+  // Into Matroska, libav would shift all streams, picture included, when sound begins before zero
+  // with samples that only start up its decoder. A block can hold such a time, so nothing is moved.
+  bool keeps_zero_ = false;
   std::vector<std::optional<Copied>> copied_;  // by source stream
   std::vector<std::string> left_out_;
   std::optional<std::int64_t> last_video_dts_;

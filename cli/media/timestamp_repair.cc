@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -22,7 +23,8 @@ constexpr std::size_t kFewestForLine = 8;
 
 struct Entry {
   std::int64_t value = 0;
-  bool is_known = false;
+  bool is_known = false;   // false: `value` is only a place to sort it to
+  bool has_stamp = false;  // the frame will carry `value` as its stamp
 };
 
 struct Line {
@@ -70,20 +72,73 @@ Line FitLine(const std::vector<Entry>& sorted) {
   return line;
 }
 
-double MedianGap(const std::vector<Entry>& sorted, double fallback) {
+// Median step between different values.
+double MedianGap(const std::vector<std::int64_t>& sorted, double fallback) {
   std::vector<double> gaps;
   for (std::size_t k = 1; k < sorted.size(); ++k) {
-    if (sorted[k].value > sorted[k - 1].value) {
-      gaps.push_back(static_cast<double>(sorted[k].value - sorted[k - 1].value));
+    if (sorted[k] > sorted[k - 1]) {
+      gaps.push_back(static_cast<double>(sorted[k] - sorted[k - 1]));
     }
   }
   return gaps.empty() ? fallback : Median(gaps);
+}
+
+std::vector<std::int64_t> ValuesOf(const std::vector<Entry>& entries) {
+  std::vector<std::int64_t> values;
+  values.reserve(entries.size());
+  for (const Entry& entry : entries) {
+    values.push_back(entry.value);
+  }
+  return values;
 }
 
 void SortByTime(std::vector<Entry>& entries) {
   std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     return a.value != b.value ? a.value < b.value : (a.is_known && !b.is_known);
   });
+}
+
+// Containers may leave out the presentation times of some packets (AVI, MPEG program streams). In
+// a regular stream frames are shown at the times at which frames are decoded, later by a delay, so
+// a missing time is the next decoding time that no other frame is shown at.
+void FillFromDts(const std::vector<TimestampPlan::Packet>& packets, double fallback_period,
+                 std::vector<Entry>& entries) {
+  std::vector<std::int64_t> decoded;
+  for (const TimestampPlan::Packet& packet : packets) {
+    if (IsUsable(packet.dts)) {
+      decoded.push_back(*packet.dts);
+    }
+  }
+  if (decoded.empty()) {
+    return;
+  }
+  std::vector<std::int64_t> shown;
+  for (const Entry& entry : entries) {
+    if (entry.is_known) {
+      shown.push_back(entry.value);
+    }
+  }
+  std::sort(decoded.begin(), decoded.end());
+  std::sort(shown.begin(), shown.end());
+  std::vector<std::int64_t> unclaimed;
+  std::set_difference(decoded.begin(), decoded.end(), shown.begin(), shown.end(),
+                      std::back_inserter(unclaimed));
+  // The delay lets the last frames be shown after the last is decoded.
+  std::int64_t last = shown.empty() ? decoded.back() : std::max(decoded.back(), shown.back());
+  const double period = MedianGap(decoded, fallback_period);
+  auto next = unclaimed.begin();
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    if (entries[k].is_known || packets[k].pts || !IsUsable(packets[k].dts)) {
+      continue;
+    }
+    next = std::lower_bound(next, unclaimed.end(), *packets[k].dts);
+    if (next == unclaimed.end()) {
+      last += std::llround(period);
+      entries[k] = {last, true, false};
+    } else {
+      entries[k] = {*next++, true, false};
+    }
+  }
 }
 
 // Gives entries without a value that of their predecessor in file order, which puts them next to
@@ -144,38 +199,64 @@ void ForgetAbsurd(std::vector<Entry>& entries, double fallback_period) {
   }
 }
 
-// Replaces the times that are not original by even steps between their original neighbours. An
-// original that leaves no room for its predecessors is given up.
-void InterpolateDamaged(std::vector<TimestampPlan::Slot>& slots, double period) {
+bool IsRepeated(const std::vector<Entry>& sorted, std::size_t k) {
+  return (k > 0 && sorted[k].value == sorted[k - 1].value) ||
+         (k + 1 < sorted.size() && sorted[k].value == sorted[k + 1].value);
+}
+
+// Puts what is not known, or not on the line, onto it.
+void PutOnLine(const Line& line, std::vector<Entry>& sorted) {
+  std::vector<bool> is_sound(sorted.size());
+  for (std::size_t k = 0; k < sorted.size(); ++k) {
+    is_sound[k] = sorted[k].is_known && !IsRepeated(sorted, k) && line.Holds(k, sorted[k].value);
+  }
+  for (std::size_t k = 0; k < sorted.size(); ++k) {
+    if (!is_sound[k]) {
+      sorted[k] = {std::llround(line.At(k)), false, false};
+    }
+  }
+}
+
+// Replaces what is not known by even steps between its known neighbours. A known time that leaves
+// no room for its predecessors is given up.
+void Interpolate(double period, std::vector<Entry>& sorted) {
   constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-  std::size_t previous = kNone;  // last original
-  for (std::size_t k = 0; k < slots.size(); ++k) {
-    if (!slots[k].is_original) {
+  std::size_t previous = kNone;  // last known
+  for (std::size_t k = 0; k < sorted.size(); ++k) {
+    if (!sorted[k].is_known) {
       continue;
     }
     if (previous == kNone) {
       for (std::size_t j = 0; j < k; ++j) {
-        slots[j].time = slots[k].time - std::llround(period * static_cast<double>(k - j));
+        sorted[j].value = sorted[k].value - std::llround(period * static_cast<double>(k - j));
       }
     } else {
-      const std::int64_t room = slots[k].time - slots[previous].time;
+      const std::int64_t room = sorted[k].value - sorted[previous].value;
       const auto steps = static_cast<std::int64_t>(k - previous);
       if (room < steps) {
-        slots[k].is_original = false;
+        sorted[k].is_known = false;
         continue;
       }
       for (std::int64_t j = 1; j < steps; ++j) {
-        slots[previous + static_cast<std::size_t>(j)].time =
-            slots[previous].time + std::llround(static_cast<double>(room) * static_cast<double>(j) /
-                                                static_cast<double>(steps));
+        const double share = static_cast<double>(j) / static_cast<double>(steps);
+        sorted[previous + static_cast<std::size_t>(j)].value =
+            sorted[previous].value + std::llround(static_cast<double>(room) * share);
       }
     }
     previous = k;
   }
   const std::size_t anchor = previous == kNone ? 0 : previous;
-  for (std::size_t k = anchor + 1; k < slots.size(); ++k) {
-    slots[k].time = slots[anchor].time + std::llround(period * static_cast<double>(k - anchor));
+  for (std::size_t k = anchor + 1; k < sorted.size(); ++k) {
+    sorted[k].value = sorted[anchor].value + std::llround(period * static_cast<double>(k - anchor));
   }
+}
+
+std::size_t CountOnLine(const Line& line, const std::vector<Entry>& sorted) {
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < sorted.size(); ++k) {
+    count += line.Holds(k, sorted[k].value) ? 1 : 0;
+  }
+  return count;
 }
 
 }  // namespace
@@ -185,60 +266,44 @@ TimestampPlan::TimestampPlan(const std::vector<Packet>& packets, double fallback
   if (packets.empty()) {
     return;
   }
-  const auto with_pts = static_cast<std::size_t>(std::count_if(
-      packets.begin(), packets.end(), [](const Packet& packet) { return IsUsable(packet.pts); }));
-  // Some containers carry decoding times only (AVI); sorted, they are still the times at which
-  // frames follow each other.
-  const bool only_dts = with_pts * 2 < packets.size();
   std::vector<Entry> entries(packets.size());
   for (std::size_t k = 0; k < packets.size(); ++k) {
-    const std::optional<std::int64_t>& stamp = only_dts ? packets[k].dts : packets[k].pts;
-    entries[k] = {IsUsable(stamp) ? *stamp : 0, IsUsable(stamp)};
+    const bool is_usable = IsUsable(packets[k].pts);
+    entries[k] = {is_usable ? *packets[k].pts : 0, is_usable, is_usable};
   }
   ForgetAbsurd(entries, period_);
+  FillFromDts(packets, period_, entries);
+  const bool knows_any = std::any_of(entries.begin(), entries.end(),
+                                     [](const Entry& entry) { return entry.is_known; });
   FillUnknown(entries);
   SortByTime(entries);
-
-  slots_.resize(entries.size());
   for (std::size_t k = 0; k < entries.size(); ++k) {
-    const bool repeated = k > 0 && entries[k].value == entries[k - 1].value;
-    slots_[k] = {entries[k].value, entries[k].is_known && !repeated};
-    is_damaged_ = is_damaged_ || !slots_[k].is_original;
+    // No stamps at all is how bare streams are, not damage.
+    is_damaged_ = is_damaged_ || (knows_any && (!entries[k].is_known || IsRepeated(entries, k)));
   }
-  period_ = std::max(1.0, MedianGap(entries, period_));
+  period_ = std::max(1.0, MedianGap(ValuesOf(entries), period_));
 
   const bool tells_rate = entries.size() >= kFewestForLine;
   const Line line = tells_rate ? FitLine(entries) : Line{};
-  std::size_t on_line = 0;
-  for (std::size_t k = 0; tells_rate && k < entries.size(); ++k) {
-    on_line += line.Holds(k, entries[k].value) ? 1 : 0;
-  }
-  is_constant_rate_ = tells_rate && line.period >= 1.0 && on_line == entries.size();
-  if (is_damaged_) {
-    const bool plainly_constant =
-        tells_rate && line.period >= 1.0 &&
-        static_cast<double>(on_line) >= kConstantShare * static_cast<double>(entries.size());
-    if (plainly_constant) {
-      period_ = line.period;
-      for (std::size_t k = 0; k < slots_.size(); ++k) {
-        const bool repeated = (k > 0 && entries[k].value == entries[k - 1].value) ||
-                              (k + 1 < entries.size() && entries[k].value == entries[k + 1].value);
-        slots_[k].is_original = entries[k].is_known && !repeated && line.Holds(k, entries[k].value);
-        if (!slots_[k].is_original) {
-          slots_[k].time = std::llround(line.At(k));
-        }
-      }
-      is_constant_rate_ = true;
-    } else {
-      InterpolateDamaged(slots_, period_);
+  const bool is_plainly_constant = tells_rate && line.period >= 1.0 &&
+                                   static_cast<double>(CountOnLine(line, entries)) >=
+                                       kConstantShare * static_cast<double>(entries.size());
+  if (is_damaged_ && is_plainly_constant) {
+    period_ = line.period;
+    PutOnLine(line, entries);
+  } else if (is_damaged_ || !knows_any) {
+    for (std::size_t k = entries.size(); k-- > 1;) {
+      entries[k].is_known = entries[k].is_known && entries[k].value != entries[k - 1].value;
     }
+    Interpolate(period_, entries);
   }
-  if (only_dts) {
-    // Frames carry no stamp to be found by: they take the slots one after the other.
-    is_damaged_ = true;
-    for (Slot& slot : slots_) {
-      slot.is_original = false;
-    }
+  if (tells_rate) {
+    const Line final_line = FitLine(entries);
+    is_constant_rate_ = CountOnLine(final_line, entries) == entries.size();
+  }
+  slots_.reserve(entries.size());
+  for (const Entry& entry : entries) {
+    slots_.push_back({entry.value, entry.is_known && entry.has_stamp});
   }
 }
 

@@ -21,7 +21,9 @@ namespace rsstab::media {
 //   one line over the frame index): stamps on the line are kept, all others are put onto it.
 // - Damage elsewhere: the repeated, missing or absurd stamps are put evenly between their
 //   neighbours.
-// - Stamps missing altogether or nearly so: the frame period from `fallback_period`.
+// - Presentation times that the container leaves out by design are taken from the decoding times
+//   (AVI, MPEG program streams), and without those from `fallback_period` (bare streams). This is
+//   no damage.
 class TimestampPlan {
  public:
   static constexpr double kConstantShare = 0.9;
@@ -33,7 +35,7 @@ class TimestampPlan {
   };
   struct Slot {
     std::int64_t time = 0;
-    bool is_original = true;  // some packet carries exactly this stamp
+    bool is_original = true;  // some frame carries exactly this stamp
   };
 
   TimestampPlan() = default;

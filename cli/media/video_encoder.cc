@@ -229,6 +229,9 @@ Result<std::unique_ptr<VideoEncoder>> VideoEncoder::Open(const EncoderInput& inp
   if (input.needs_global_header) {
     context.flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
   }
+  if (input.needs_display_order) {
+    context.max_b_frames = 0;
+  }
   if (choice->encoder == "libsvtav1") {
     // Its library writes to stderr unless told by the environment not to; there is no other way.
     setenv("SVT_LOG", "0", 0);

@@ -30,6 +30,7 @@ struct EncoderInput {
   AvColor color;
   const AVFrame* first_frame_properties = nullptr;  // HDR10 side data; null: none
   bool needs_global_header = false;                 // the container keeps codec headers apart
+  bool needs_display_order = false;                 // the container cannot hold B-frames
 };
 
 // One encoder. It sees frames as numbered 0, 1, 2, ... at constant rate, and the packets get the

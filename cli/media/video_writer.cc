@@ -81,6 +81,7 @@ Status VideoWriter::Impl::Start(const std::string& path, EncoderInput input, Mux
   input.format = format;
   input.full_range = layout.full_range;
   input.needs_global_header = ((*container)->flags & AVFMT_GLOBALHEADER) != 0;
+  input.needs_display_order = HoldsConstantRateOnly(**container);
   Result<std::unique_ptr<VideoEncoder>> made =
       VideoEncoder::Open(input, options, CodecFor(**container, options.codec), &logger);
   if (!made) {
@@ -137,7 +138,10 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::Open(const std::string& path, 
   input.sample_aspect_ratio = info.sample_aspect_ratio;
   input.color = access.color;
   input.first_frame_properties = access.first_frame_properties;
-  if (Status ok = impl->Start(path, input, MuxerVideo(), &access, options); !ok) {
+  MuxerVideo video;
+  video.has_variable_rate = info.variable_frame_rate;
+  video.starts_before_zero = info.start_s < 0.0;
+  if (Status ok = impl->Start(path, input, video, &access, options); !ok) {
     return Propagate(ok.error());
   }
   return std::unique_ptr<VideoWriter>(new VideoWriter(std::move(impl)));

@@ -254,7 +254,7 @@ class Remuxer {
   void WriteOthers(double duration_s) {
     if (audio_ >= 0) {
       for (int i = 0; i * 1024 < duration_s * 44100; ++i) {
-        WriteBytes(audio_, {1, 44100}, i * 1024, 1024,
+        WriteBytes(audio_, {1, 44100}, recipe_.audio_start + i * 1024, 1024,
                    RandomBytes(static_cast<std::size_t>(90 + i % 7), static_cast<unsigned>(i)));
       }
     }

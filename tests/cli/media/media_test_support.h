@@ -87,8 +87,9 @@ struct FileContent {
 
 // A file made of an existing clip's video packets and whatever else is wanted.
 struct RemuxRecipe {
-  bool with_audio = false;     // made-up AAC packets, 44100 Hz
-  std::string subtitle_codec;  // "subrip", "mov_text", ...; empty: none
+  bool with_audio = false;       // made-up AAC packets, 44100 Hz
+  std::int64_t audio_start = 0;  // of the first one, samples
+  std::string subtitle_codec;    // "subrip", "mov_text", ...; empty: none
   bool with_attachment = false;
   bool with_data = false;  // a "gpmd" track, one packet a second (MP4 only)
   bool with_chapters = false;

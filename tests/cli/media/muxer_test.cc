@@ -171,6 +171,33 @@ TEST_F(MuxerTest, SoundStaysWithThePicture) {
   }
 }
 
+// Encoded sound begins before zero; the picture must not move for it.
+TEST_F(MuxerTest, PictureKeepsItsTimeBesideSoundBeforeZero) {
+  RemuxRecipe recipe;
+  recipe.with_audio = true;
+  recipe.audio_start = -1024;
+  Remux(folder_ / "video.mp4", folder_ / "in.mp4", recipe);
+  for (const char* name : {"out.mp4", "out.mkv"}) {
+    Copy("in.mp4", name);
+    const FileContent out = Inspect(folder_ / name);
+    EXPECT_NEAR(out.OfType("video")[0]->packets[0].pts_s, 0.0, 1e-9) << name;
+    // libav does not read the first one's time back from Matroska when the codec does not tell it.
+    EXPECT_NEAR(out.OfType("audio")[0]->packets[1].pts_s, 0.0, 5e-4) << name;
+    EXPECT_NEAR(out.OfType("audio")[0]->packets[9].pts_s, 8 * 1024.0 / 44100.0, 5e-4) << name;
+  }
+}
+
+TEST_F(MuxerTest, ConstantRateContainerIsTold) {
+  RemuxRecipe recipe;
+  for (int i = 0; i < 90; ++i) {
+    recipe.video_times.push_back(3000 * i + (i > 40 ? 30000 : 0));
+  }
+  Remux(folder_ / "video.mp4", folder_ / "in.mp4", recipe);
+  Copy("in.mp4", "out.avi");
+  EXPECT_THAT(*warnings_.texts, ElementsAre(HasSubstr("constant rate")));
+  EXPECT_EQ(testing::ReadClip(folder_ / "out.avi")->frames.size(), 90U);
+}
+
 TEST_F(MuxerTest, BroadcastStreamsStartAtZeroElsewhere) {
   ClipRecipe recipe = SmallRecipe();
   recipe.description.time_base = {1, 90000};

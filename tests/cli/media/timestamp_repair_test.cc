@@ -153,6 +153,34 @@ TEST(TimestampRepair, DecodingTimesServeWhereThereAreNoOthers) {
   }
 }
 
+TEST(TimestampRepair, DecodingTimesFillGapsLeftByDesign) {
+  // B-frames in a container that leaves out some times of the others, as MPEG program streams do.
+  std::vector<TimestampPlan::Packet> packets;
+  for (int group = 0; group < 10; ++group) {
+    const std::int64_t dts = 30 * group;
+    const Stamp reference = group % 2 == 0 ? Stamp(dts + 40) : Stamp();
+    packets.push_back({reference, dts + 10});
+    packets.push_back({dts + 20, dts + 20});
+    packets.push_back({dts + 30, dts + 30});
+  }
+  const TimestampPlan plan(packets, 10.0);
+  EXPECT_FALSE(plan.is_damaged());
+  EXPECT_TRUE(plan.is_constant_rate());
+  TimestampRepair repair(plan, 10.0);
+  std::vector<std::int64_t> times;
+  for (int group = 0; group < 10; ++group) {
+    const std::int64_t dts = 30 * group;
+    repair.Push(dts + 20);
+    repair.Push(dts + 30);
+    repair.Push(group % 2 == 0 ? Stamp(dts + 40) : Stamp());
+  }
+  repair.Finish();
+  while (const Stamp time = repair.Pop()) {
+    times.push_back(*time);
+  }
+  EXPECT_THAT(times, ElementsAreArray(Values(Steady(30, 10, 20))));
+}
+
 TEST(TimestampRepair, AllStampsEqual) {
   const std::vector<Stamp> frames(12, 700);
   EXPECT_THAT(Repair(frames, frames, 5.0),
