@@ -9,11 +9,11 @@ extern "C" {
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <string_view>
 #include <utility>
 
 #include "cli/media/av_error.h"
 #include "cli/media/av_log.h"
+#include "cli/media/container.h"
 #include "cli/media/stream_copy.h"
 
 namespace rsstab::media {
@@ -36,14 +36,6 @@ std::int64_t SeekBytes(void* opaque, std::int64_t offset, int whence) {
     return back < 0 ? back : size;
   }
   return file->Seek(offset, whence & ~AVSEEK_FORCE);
-}
-
-bool IsNamed(const AVOutputFormat& format, std::initializer_list<std::string_view> names) {
-  return std::find(names.begin(), names.end(), std::string_view(format.name)) != names.end();
-}
-
-bool IsMp4Like(const AVOutputFormat& format) {
-  return IsNamed(format, {"mp4", "mov", "ipod", "ismv", "3gp", "3g2"});
 }
 
 // A display matrix for a plain turn.
@@ -89,31 +81,6 @@ void FillOptions(const AVOutputFormat& format, bool can_seek, bool has_special_m
 
 }  // namespace
 
-bool HoldsConstantRateOnly(const AVOutputFormat& format) { return IsNamed(format, {"avi"}); }
-
-Result<const AVOutputFormat*> ChooseContainer(const std::string& path, const std::string& format) {
-  if (!format.empty()) {
-    const AVOutputFormat* named = av_guess_format(format.c_str(), nullptr, nullptr);
-    if (named == nullptr) {
-      return Fail(ErrorCode::kUnsupported,
-                  "there is no container format '{}'; examples are mp4, mov, matroska, webm, nut",
-                  format);
-    }
-    return named;
-  }
-  if (path == "-") {
-    return av_guess_format("matroska", nullptr, nullptr);
-  }
-  const AVOutputFormat* guessed = av_guess_format(nullptr, path.c_str(), nullptr);
-  if (guessed == nullptr || guessed->video_codec == AV_CODEC_ID_NONE) {
-    return Fail(ErrorCode::kUnsupported,
-                "{}: its name does not say which container to write; end it in .mp4, .mov or .mkv, "
-                "or give --format",
-                path);
-  }
-  return guessed;
-}
-
 Result<std::unique_ptr<Muxer>> Muxer::Open(OutputFile& file, const AVOutputFormat& format,
                                            const MuxerVideo& video, const SourceAccess* source,
                                            const WriterOptions& options, const Logger& logger) {
@@ -143,8 +110,9 @@ Result<std::unique_ptr<Muxer>> Muxer::Open(OutputFile& file, const AVOutputForma
     return Propagate(muxer->WriteError(code));
   }
   if (!muxer->left_out_.empty()) {
-    logger->warn("{}: a '{}' file cannot hold these, they are left out: {}", file.path(),
-                 format.name, fmt::join(muxer->left_out_, ", "));
+    logger->warn("{}: a '{}' file cannot hold these, they are left out: {}{}", file.path(),
+                 format.name, fmt::join(muxer->left_out_, ", "),
+                 IsMatroska(format) ? "" : " (.mkv holds most kinds)");
   }
   if (video.has_variable_rate && HoldsConstantRateOnly(format)) {
     logger->warn(
@@ -186,7 +154,7 @@ int Muxer::Start(const AVOutputFormat& format, const MuxerVideo& video, const So
     return AVERROR(ENOMEM);
   }
   context->pb = io_;
-  keeps_zero_ = IsNamed(format, {"matroska", "webm"}) && !video.starts_before_zero;
+  keeps_zero_ = IsMatroska(format) && !video.starts_before_zero;
 
   int code = 0;
   if (source == nullptr) {

@@ -21,14 +21,6 @@
 
 namespace rsstab::media {
 
-// libav's muxer for an output. Errors: kUnsupported when name or extension say nothing.
-[[nodiscard]] Result<const AVOutputFormat*> ChooseContainer(const std::string& path,
-                                                            const std::string& format);
-
-// Whether frame n is shown after n periods, whatever its time: such a file has the period as its
-// tick, and no place for frames in another order than that of their display.
-[[nodiscard]] bool HoldsConstantRateOnly(const AVOutputFormat& format);
-
 // What the video stream is, apart from what the encoder says.
 struct MuxerVideo {
   const AVCodecContext* encoder = nullptr;

@@ -13,6 +13,8 @@ extern "C" {
 #include <cstring>
 #include <string_view>
 
+#include "cli/media/container.h"
+
 namespace rsstab::media {
 namespace {
 
@@ -29,11 +31,6 @@ constexpr std::array<std::string_view, 18> kOrdinaryKeys = {
 template <std::size_t N>
 bool Contains(const std::array<std::string_view, N>& keys, std::string_view key) {
   return std::find(keys.begin(), keys.end(), key) != keys.end();
-}
-
-bool IsMp4Like(const AVOutputFormat& format) {
-  const std::string_view name = format.name;
-  return name == "mp4" || name == "mov" || name == "ipod" || name == "ismv" || name == "3gp";
 }
 
 int AddSideData(AVStream& target, AVPacketSideDataType type, const std::uint8_t* data,

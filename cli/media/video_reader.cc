@@ -2,18 +2,17 @@
 #include "cli/media/video_reader.h"
 
 extern "C" {
-#include <libavutil/display.h>
 #include <libavutil/pixdesc.h>
 }
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cmath>
 #include <deque>
 #include <utility>
 
 #include "cli/media/av_error.h"
+#include "cli/media/clip_description.h"
 #include "cli/media/frame_bridge.h"
 #include "cli/media/frame_converter.h"
 #include "cli/media/input_file.h"
@@ -26,44 +25,6 @@ namespace {
 
 std::optional<std::int64_t> Stamp(std::int64_t value) {
   return value == AV_NOPTS_VALUE ? std::nullopt : std::optional(value);
-}
-
-Rational ToRational(AVRational value) { return {value.num, value.den}; }
-
-// The frame rate libav guesses, for where the timestamps do not tell.
-double GuessedRate(AVFormatContext& input, int stream) {
-  constexpr double kUsualRate = 30.0;
-  constexpr double kHighestRate = 1000.0;
-  const double rate = av_q2d(av_guess_frame_rate(&input, input.streams[stream], nullptr));
-  return rate > 0.0 && rate <= kHighestRate ? rate : kUsualRate;
-}
-
-// Rates that cameras have, so that 29.97002 from rounded stamps becomes 30000/1001.
-Rational NearestRate(double rate) {
-  constexpr double kSame = 2e-4;  // 29.97 and 30 differ by 1e-3
-  constexpr std::array<Rational, 16> kUsual = {{{24000, 1001},
-                                                {24, 1},
-                                                {25, 1},
-                                                {30000, 1001},
-                                                {30, 1},
-                                                {48, 1},
-                                                {50, 1},
-                                                {60000, 1001},
-                                                {60, 1},
-                                                {100, 1},
-                                                {120000, 1001},
-                                                {120, 1},
-                                                {240000, 1001},
-                                                {240, 1},
-                                                {15, 1},
-                                                {10, 1}}};
-  for (const Rational& usual : kUsual) {
-    if (std::abs(rate - usual.Value()) <= kSame * usual.Value()) {
-      return usual;
-    }
-  }
-  constexpr int kLargestTerm = 60000;  // MPEG-4 allows 65535
-  return ToRational(av_d2q(rate, kLargestTerm));
 }
 
 // All timestamps of the video stream, without decoding.
@@ -85,86 +46,15 @@ Result<std::vector<TimestampPlan::Packet>> ScanTimestamps(AVFormatContext& input
   return packets;
 }
 
-double RotationOf(const AVStream& stream) {
-  std::size_t size = 0;
-  const std::uint8_t* matrix = av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, &size);
-  if (matrix == nullptr || size < 9 * sizeof(std::int32_t)) {
-    return 0.0;
-  }
-  const double degrees = av_display_rotation_get(reinterpret_cast<const std::int32_t*>(matrix));
-  if (std::isnan(degrees)) {
-    return 0.0;
-  }
-  return degrees <= -180.0 ? 180.0 : degrees;
-}
-
-bool HasHdrMetadata(const AVFrame* properties) {
-  return properties != nullptr &&
-         (av_frame_get_side_data(properties, AV_FRAME_DATA_MASTERING_DISPLAY_METADATA) != nullptr ||
-          av_frame_get_side_data(properties, AV_FRAME_DATA_CONTENT_LIGHT_LEVEL) != nullptr);
-}
-
-// What the picture says, completed by what the container says.
-AvColor ColorOf(const AVFrame& picture, const AVCodecParameters& parameters) {
-  AvColor color{picture.color_range, picture.color_primaries, picture.color_trc, picture.colorspace,
-                picture.chroma_location};
-  if (color.range == AVCOL_RANGE_UNSPECIFIED) {
-    color.range = NameSaysFullRange(static_cast<AVPixelFormat>(picture.format))
-                      ? AVCOL_RANGE_JPEG
-                      : parameters.color_range;
-  }
-  if (color.primaries == AVCOL_PRI_UNSPECIFIED) {
-    color.primaries = parameters.color_primaries;
-  }
-  if (color.transfer == AVCOL_TRC_UNSPECIFIED) {
-    color.transfer = parameters.color_trc;
-  }
-  if (color.matrix == AVCOL_SPC_UNSPECIFIED) {
-    color.matrix = parameters.color_space;
-  }
-  if (color.chroma_location == AVCHROMA_LOC_UNSPECIFIED) {
-    color.chroma_location = parameters.chroma_location;
-  }
-  return color;
-}
-
-void CountStreams(const AVFormatContext& input, VideoInfo& info) {
-  for (unsigned i = 0; i < input.nb_streams; ++i) {
-    const AVCodecParameters& parameters = *input.streams[i]->codecpar;
-    switch (parameters.codec_type) {
-      case AVMEDIA_TYPE_AUDIO:
-        ++info.audio_streams;
-        break;
-      case AVMEDIA_TYPE_SUBTITLE:
-        ++info.subtitle_streams;
-        break;
-      case AVMEDIA_TYPE_ATTACHMENT:
-        ++info.attachment_streams;
-        break;
-      case AVMEDIA_TYPE_DATA:
-        if (std::string kind = FourLetterKind(parameters); !kind.empty()) {
-          info.telemetry_kinds.push_back(std::move(kind));
-        }
-        break;
-      default:
-        break;
-    }
-  }
-  info.chapters = static_cast<int>(input.nb_chapters);
-}
-
 }  // namespace
 
 struct VideoReader::Impl {
   Logger logger;
-  VideoInfo info;
-  AvColor color;
-  AVPixelFormat format = AV_PIX_FMT_NONE;
+  ClipDescription clip;
   std::unique_ptr<VideoDecoder> decoder;
   std::unique_ptr<TimestampRepair> repair;
   std::unique_ptr<FrameConverter> converter;
   AvFramePtr first_picture;  // decoded by Open()
-  AvFramePtr first_properties;
   // Decoded, waiting for their times: at most kLookAhead + 1.
   std::deque<AvFramePtr> waiting;
   bool has_started = false;
@@ -172,10 +62,8 @@ struct VideoReader::Impl {
   bool is_finished = false;
   bool has_told_change = false;
   std::int64_t next_index = 0;
-  double nominal_period = 1.0;  // ticks
 
   Status OpenFile(const std::string& path, const ReaderOptions& options);
-  void Describe(const AVFrame& picture, const TimestampPlan& plan, bool was_scanned);
   Result<AvFramePtr> NextPicture();
   Result<AvFramePtr> Deliverable(AvFramePtr picture);
   Result<VideoFrame> MakeFrame(AvFramePtr picture, std::int64_t pts);
@@ -193,7 +81,8 @@ Status VideoReader::Impl::OpenFile(const std::string& path, const ReaderOptions&
     return Propagate(stream.error());
   }
   const AVRational time_base = (*input)->streams[*stream]->time_base;
-  nominal_period = std::max(1.0, 1.0 / (GuessedRate(**input, *stream) * av_q2d(time_base)));
+  const double nominal_period =
+      std::max(1.0, 1.0 / (GuessedRate(**input, *stream) * av_q2d(time_base)));
 
   // Scan, then open afresh: going back to the start is not exact in every container.
   TimestampPlan plan;
@@ -225,9 +114,10 @@ Status VideoReader::Impl::OpenFile(const std::string& path, const ReaderOptions&
         "{}: no frame of its '{}' video stream can be decoded; the file is damaged or empty", path,
         avcodec_get_name(decoder->stream().codecpar->codec_id));
   }
-  info.path = path;
-  Describe(**picture, plan, can_scan);
-  if (info.timestamps_repaired) {
+  clip = DescribeClip(decoder->input(), decoder->stream(), **picture, can_scan ? &plan : nullptr,
+                      nominal_period);
+  clip.info.path = path;
+  if (clip.info.timestamps_repaired) {
     logger->warn(
         "{}: some timestamps are damaged (missing, repeated or absurd); every frame is "
         "kept, with a time put in its place",
@@ -236,63 +126,6 @@ Status VideoReader::Impl::OpenFile(const std::string& path, const ReaderOptions&
   repair = std::make_unique<TimestampRepair>(std::move(plan), nominal_period);
   first_picture = std::move(*picture);
   return {};
-}
-
-void VideoReader::Impl::Describe(const AVFrame& picture, const TimestampPlan& plan,
-                                 bool was_scanned) {
-  AVFormatContext& input = decoder->input();
-  const AVStream& stream = decoder->stream();
-  const AVCodecParameters& parameters = *stream.codecpar;
-  const auto stored = static_cast<AVPixelFormat>(picture.format);
-  color = ColorOf(picture, parameters);
-  format = DeliveredFormat(stored);
-  if (parameters.codec_id == AV_CODEC_ID_MJPEG &&
-      color.chroma_location == AVCHROMA_LOC_UNSPECIFIED) {
-    color.chroma_location = AVCHROMA_LOC_CENTER;  // JFIF
-  }
-  info.layout = LayoutOf(format, color.range, color.chroma_location).value_or(PixelLayout());
-  first_properties = WithContainerHdr(KeptProperties(picture), stream);
-
-  info.container = input.iformat->name;
-  info.codec = avcodec_get_name(parameters.codec_id);
-  info.pixel_format = FormatName(stored);
-  info.width = picture.width;
-  info.height = picture.height;
-  info.time_base = ToRational(stream.time_base);
-  info.interlaced = picture.interlaced_frame != 0;
-  info.rotation_degrees = RotationOf(stream);
-  const AVRational aspect = av_guess_sample_aspect_ratio(&input, const_cast<AVStream*>(&stream),
-                                                         const_cast<AVFrame*>(&picture));
-  info.sample_aspect_ratio = aspect.num > 0 && aspect.den > 0 ? ToRational(aspect) : Rational{1, 1};
-  info.color = NamesOf(color);
-  info.has_hdr_metadata = HasHdrMetadata(first_properties.get());
-  CountStreams(input, info);
-
-  const double tick_s = av_q2d(stream.time_base);
-  double rate = 1.0 / (nominal_period * tick_s);
-  if (was_scanned && !plan.slots().empty()) {
-    const auto count = static_cast<std::int64_t>(plan.slots().size());
-    const std::int64_t span = plan.slots().back().time - plan.slots().front().time;
-    info.frame_count = count;
-    info.start_s = static_cast<double>(plan.slots().front().time) * tick_s;
-    info.timestamps_repaired = plan.is_damaged();
-    info.variable_frame_rate = count > 1 && !plan.is_constant_rate();
-    if (count > 1) {
-      rate = static_cast<double>(count - 1) / (static_cast<double>(span) * tick_s);
-      nominal_period = plan.period();
-    }
-    info.duration_s = static_cast<double>(count) / rate;
-  } else {
-    info.start_s = picture.pts != AV_NOPTS_VALUE ? static_cast<double>(picture.pts) * tick_s : 0.0;
-    if (stream.duration != AV_NOPTS_VALUE && stream.duration > 0) {
-      info.duration_s = static_cast<double>(stream.duration) * tick_s;
-    } else if (input.duration != AV_NOPTS_VALUE && input.duration > 0) {
-      info.duration_s = static_cast<double>(input.duration) / AV_TIME_BASE;
-    }
-    info.frame_count =
-        stream.nb_frames > 0 ? stream.nb_frames : std::llround(info.duration_s * rate);
-  }
-  info.frame_rate = NearestRate(rate);
 }
 
 Result<AvFramePtr> VideoReader::Impl::NextPicture() {
@@ -305,23 +138,23 @@ Result<AvFramePtr> VideoReader::Impl::Deliverable(AvFramePtr picture) {
   const bool is_upside_down =
       std::any_of(std::begin(picture->linesize), std::begin(picture->linesize) + kMaxPlanes,
                   [](int stride) { return stride < 0; });
-  const bool same_size = picture->width == info.width && picture->height == info.height;
-  if (stored == format && same_size && !is_upside_down) {
+  const bool same_size = picture->width == clip.info.width && picture->height == clip.info.height;
+  if (stored == clip.format && same_size && !is_upside_down) {
     return picture;
   }
   if (!has_told_change && next_index > 0 &&
       (!same_size || FormatName(stored) != FormatName(WithoutRange(static_cast<AVPixelFormat>(
-                                               av_get_pix_fmt(info.pixel_format.c_str())))))) {
+                                               av_get_pix_fmt(clip.info.pixel_format.c_str())))))) {
     logger->warn(
         "{}: frame {}: the picture changes to {}x{} {} within the clip; it is converted "
         "to {}x{} as at the start",
-        info.path, next_index, picture->width, picture->height, FormatName(stored), info.width,
-        info.height);
+        clip.info.path, next_index, picture->width, picture->height, FormatName(stored),
+        clip.info.width, clip.info.height);
     has_told_change = true;
   }
   if (converter == nullptr) {
-    converter = std::make_unique<FrameConverter>(
-        FrameConverter::Target{format, info.width, info.height, info.layout.full_range});
+    converter = std::make_unique<FrameConverter>(FrameConverter::Target{
+        clip.format, clip.info.width, clip.info.height, clip.info.layout.full_range});
   }
   return converter->Convert(*picture);
 }
@@ -334,23 +167,23 @@ Result<VideoFrame> VideoReader::Impl::MakeFrame(AvFramePtr picture, std::int64_t
   origin.properties = KeptProperties(*picture);
   Result<AvFramePtr> deliverable = Deliverable(std::move(picture));
   if (!deliverable) {
-    return Propagate(deliverable.error(), fmt::format("{}: frame {}", info.path, next_index));
+    return Propagate(deliverable.error(), fmt::format("{}: frame {}", clip.info.path, next_index));
   }
-  frame.frame = WrapPicture(std::move(*deliverable), info.layout);
+  frame.frame = WrapPicture(std::move(*deliverable), clip.info.layout);
   SetOrigin(frame.frame, std::move(origin));
   frame.index = next_index++;
   frame.pts = pts;
-  frame.time_s = static_cast<double>(pts) * info.time_base.Value();
+  frame.time_s = static_cast<double>(pts) * clip.info.time_base.Value();
   return frame;
 }
 
 void VideoReader::Impl::TellDamage() const {
   if (decoder->damaged_count() > 0) {
-    logger->warn("{}: {} damaged packets or frames; they were concealed or left out", info.path,
-                 decoder->damaged_count());
+    logger->warn("{}: {} damaged packets or frames; they were concealed or left out",
+                 clip.info.path, decoder->damaged_count());
   }
   if (decoder->ended_early()) {
-    logger->warn("{}: the file ends early; {} frames could be read", info.path, next_index);
+    logger->warn("{}: the file ends early; {} frames could be read", clip.info.path, next_index);
   }
 }
 
@@ -366,7 +199,7 @@ Result<std::unique_ptr<VideoReader>> VideoReader::Open(const std::string& path,
   return std::unique_ptr<VideoReader>(new VideoReader(std::move(impl)));
 }
 
-const VideoInfo& VideoReader::info() const { return impl_->info; }
+const VideoInfo& VideoReader::info() const { return impl_->clip.info; }
 
 Result<std::optional<VideoFrame>> VideoReader::Read() {
   Impl& impl = *impl_;
@@ -416,10 +249,10 @@ SourceAccess AccessSource(VideoReader& reader) {
   SourceAccess access;
   access.input = &impl.decoder->input();
   access.video_stream = impl.decoder->stream().index;
-  access.path = impl.info.path;
-  access.format = impl.format;
-  access.color = impl.color;
-  access.first_frame_properties = impl.first_properties.get();
+  access.path = impl.clip.info.path;
+  access.format = impl.clip.format;
+  access.color = impl.clip.color;
+  access.first_frame_properties = impl.clip.properties.get();
   access.packets = impl.decoder->other_packets();
   access.has_started = impl.has_started;
   return access;

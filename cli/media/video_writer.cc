@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "cli/media/container.h"
 #include "cli/media/frame_bridge.h"
 #include "cli/media/muxer.h"
 #include "cli/media/output_file.h"
