@@ -30,11 +30,11 @@ Eigen::Vector2d Centre(int width, int height) { return {(width - 1) * 0.5, (heig
 Grid DisplacementsOnGrid(const Eigen::Matrix3d& motion, int width, int height) {
   Grid result;
   for (std::size_t i = 0; i < result.size(); ++i) {
-    const auto column = static_cast<double>(i % kGrid);
-    const auto row = static_cast<double>(i / kGrid);
+    const std::size_t row = i / kGrid;
+    const std::size_t column = i % kGrid;
     const double step = (1.0 - 2.0 * kGridMargin) / (kGrid - 1);
-    const Eigen::Vector2d pixel((kGridMargin + step * column) * width - 0.5,
-                                (kGridMargin + step * row) * height - 0.5);
+    const Eigen::Vector2d pixel((kGridMargin + step * static_cast<double>(column)) * width - 0.5,
+                                (kGridMargin + step * static_cast<double>(row)) * height - 0.5);
     result[i] = Project(motion, pixel) - pixel;
   }
   return result;

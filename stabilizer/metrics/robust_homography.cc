@@ -103,7 +103,7 @@ std::optional<Eigen::Matrix3d> RobustHomography(std::span<const PointMatch> matc
   } catch (const cv::Exception&) {
     return std::nullopt;  // degenerate points
   }
-  const std::optional<Eigen::Matrix3d> h = Refine(matches, start, scale_px);
+  std::optional<Eigen::Matrix3d> h = Refine(matches, start, scale_px);
   if (!h) {
     return std::nullopt;
   }
