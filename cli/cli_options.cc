@@ -45,6 +45,11 @@ std::variant<Invocation, EarlyExit> ParseCommandLine(const std::vector<std::stri
     return EarlyExit{kExitDone, HelpPage(id), ""};
   } catch (const CLI::CallForVersion& version) {
     return EarlyExit{kExitDone, std::string(version.what()) + "\n", ""};
+  } catch (const CLI::ExtrasError&) {
+    return UsageError(app->get_name(), "what is '" + app->remaining().back() + "'? " +
+                                           (app->remaining().back().starts_with("-")
+                                                ? "There is no such option"
+                                                : "It is one argument too many"));
   } catch (const CLI::ParseError& error) {
     return UsageError(app->get_name(), error.what());
   }

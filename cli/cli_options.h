@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "cli/commands/compare_options.h"
 #include "cli/commands/simulate_options.h"
 #include "cli/encode_options.h"
 #include "cli/run_options.h"
@@ -18,7 +19,7 @@ inline constexpr int kExitDone = 0;
 inline constexpr int kExitFailed = 1;
 inline constexpr int kExitUsage = 2;
 
-enum class CommandId { kStabilize, kAnalyze, kRender, kInfo, kSimulate };
+enum class CommandId { kStabilize, kAnalyze, kRender, kInfo, kCompare, kSimulate };
 
 // A command line, understood: which command, and everything it was told. Fields that a command does
 // not take keep their defaults.
@@ -29,6 +30,7 @@ struct Invocation {
   bool json = false;          // info: for programs instead of people
   pipeline::StabilizeOptions stabilize;
   EncodeOptions encode;
+  CompareOptions compare;
   SimulateOptions simulate;
   RunOptions run;
 };

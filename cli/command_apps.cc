@@ -72,6 +72,11 @@ void AddFolder(CLI::App& app, Invocation& invocation) {
       ->take_last();
 }
 
+void AddBothClips(CLI::App& app, Invocation& invocation) {
+  app.add_option("IN", invocation.compare.input, "The clip before.")->required()->type_name("");
+  app.add_option("OUT", invocation.compare.output, "The clip after.")->required()->type_name("");
+}
+
 void AddInput(CLI::App& app, Invocation& invocation) {
   app.add_option("IN", invocation.input, "The clip: any file that FFmpeg's libraries read.")
       ->required()
@@ -117,6 +122,16 @@ std::vector<CommandText> BuildTexts() {
        "frame would be taken from.",
        {{"rs-stabilize info shaky.mp4", "for people"},
         {"rs-stabilize info --json shaky.mp4", "for programs"}}},
+      {CommandId::kCompare,
+       "compare",
+       "[OPTIONS] IN OUT",
+       "measures a clip before and after",
+       "Prints how much a clip shakes, jitters and wobbles before and after, how much of the "
+       "picture "
+       "was kept and how much it was bent; docs/metrics.md says what each figure means.",
+       {{"rs-stabilize compare shaky.mp4 shaky-stable.mp4", "a table"},
+        {"rs-stabilize compare walking/rs.mp4 steady.mp4 --truth walking --json",
+         "with a simulated clip's truth, for programs"}}},
       {CommandId::kSimulate,
        "simulate",
        "[OPTIONS] FOLDER",
@@ -150,6 +165,8 @@ std::unique_ptr<CLI::App> MakeCommandApp(CommandId id, Invocation& invocation) {
   invocation.command = id;
   if (id == CommandId::kSimulate) {
     AddFolder(*app, invocation);
+  } else if (id == CommandId::kCompare) {
+    AddBothClips(*app, invocation);
   } else {
     AddInput(*app, invocation);
   }
@@ -188,6 +205,10 @@ std::unique_ptr<CLI::App> MakeCommandApp(CommandId id, Invocation& invocation) {
       app->add_flag("--json", invocation.json, "Print one JSON object instead of text.")
           ->group("Output");
       AddTable(*app, stabilize, invocation.stabilize, OptionStage::kAnalysis);
+      AddTable(*app, RunOptionTable(), invocation.run);
+      break;
+    case CommandId::kCompare:
+      AddTable(*app, CompareOptionTable(), invocation.compare);
       AddTable(*app, RunOptionTable(), invocation.run);
       break;
     case CommandId::kSimulate:

@@ -3,12 +3,15 @@
 
 #include <cstdint>
 #include <exception>
+#include <iostream>
 #include <memory>
 #include <new>
+#include <sstream>
 
 #include "cli/cancellation.h"
 #include "cli/command_context.h"
 #include "cli/commands/analyze.h"
+#include "cli/commands/compare.h"
 #include "cli/commands/info.h"
 #include "cli/commands/render.h"
 #include "cli/commands/simulate.h"
@@ -19,19 +22,37 @@
 namespace rsstab::cli {
 namespace {
 
-Status Simulate(const Invocation& invocation, const CommandContext& context) {
+// Runs `job`, which counts its frames, as the one pass of a command.
+template <typename Job>
+Status RunAsPass(const CommandContext& context, const char* name, const Job& job) {
   bool begun = false;
-  const Status status =
-      RunSimulate(invocation.simulate, context.logger, [&](std::int64_t done, std::int64_t frames) {
-        if (!begun) {
-          context.reporter->BeginPass(1, 1, "simulate", frames);
-          begun = true;
-        }
-        context.reporter->Update(done);
-        return !CancelRequested();
-      });
+  const Status status = job([&](std::int64_t done, std::int64_t frames) {
+    if (!begun) {
+      context.reporter->BeginPass(1, 1, name, frames);
+      begun = true;
+    }
+    context.reporter->Update(done);
+    return !CancelRequested();
+  });
   if (status && begun) {
     context.reporter->EndPass();
+  }
+  return status;
+}
+
+Status Simulate(const Invocation& invocation, const CommandContext& context) {
+  return RunAsPass(context, "simulate", [&](const SimulateProgress& progress) {
+    return RunSimulate(invocation.simulate, context.logger, progress);
+  });
+}
+
+Status Compare(const Invocation& invocation, const CommandContext& context) {
+  std::ostringstream report;
+  const Status status = RunAsPass(context, "compare", [&](const CompareProgress& progress) {
+    return RunCompare(invocation.compare, context.logger, report, progress);
+  });
+  if (status && !(std::cout << report.str() << std::flush)) {
+    return Fail(ErrorCode::kIo, "standard output cannot be written");
   }
   return status;
 }
@@ -46,6 +67,8 @@ Status Dispatch(const Invocation& invocation, const CommandContext& context) {
       return RunRender(invocation, context);
     case CommandId::kInfo:
       return RunInfo(invocation, context);
+    case CommandId::kCompare:
+      return Compare(invocation, context);
     case CommandId::kSimulate:
       return Simulate(invocation, context);
   }

@@ -8,6 +8,7 @@
 #include <ostream>
 #include <string>
 
+#include "cli/commands/compare_options.h"
 #include "igf/base/log.h"
 #include "igf/base/result.h"
 #include "stabilizer/metrics/camera_residual.h"
@@ -15,17 +16,6 @@
 #include "stabilizer/quality_metrics.h"
 
 namespace rsstab::cli {
-
-// What `rs-stabilize compare IN OUT` is told. Defaults are the member initialisers.
-struct CompareOptions {
-  std::string input;   // the clip before
-  std::string output;  // the clip after
-  // What `simulate` wrote: its folder, or a file in it (truth.json, or the global-shutter clip
-  // itself). Empty: no truth.
-  std::string truth;
-  bool json = false;  // for programs instead of people
-  int threads = 0;    // of the decoders; 0 = one per core
-};
 
 struct CompareReport {
   struct Clip {

@@ -66,8 +66,10 @@ Status TrackSpool::Append(const FrameObservation& o) {
     impl_->matches.push_back({m.from.x(), m.from.y(), m.to.x(), m.to.y()});
   }
   const std::size_t n = impl_->matches.size();
+  // Without matches there is no array: C's functions must not see its null pointer.
   if (std::fwrite(&head, sizeof head, 1, impl_->file.get()) != 1 ||
-      std::fwrite(impl_->matches.data(), sizeof(MatchRecord), n, impl_->file.get()) != n) {
+      (n > 0 &&
+       std::fwrite(impl_->matches.data(), sizeof(MatchRecord), n, impl_->file.get()) != n)) {
     return Fail(ErrorCode::kIo,
                 "writing the temporary track file failed: {}; set TMPDIR to a "
                 "folder with more room",
@@ -95,8 +97,8 @@ Result<std::optional<FrameObservation>> TrackSpool::Next() {
     return Fail(ErrorCode::kIo, "reading the temporary track file failed at frame {}", impl_->next);
   }
   impl_->matches.resize(head.num_matches);
-  if (std::fread(impl_->matches.data(), sizeof(MatchRecord), head.num_matches, impl_->file.get()) !=
-      head.num_matches) {
+  if (head.num_matches > 0 && std::fread(impl_->matches.data(), sizeof(MatchRecord),
+                                         head.num_matches, impl_->file.get()) != head.num_matches) {
     return Fail(ErrorCode::kIo, "reading the temporary track file failed at frame {}", impl_->next);
   }
   FrameObservation o;

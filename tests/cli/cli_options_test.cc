@@ -118,6 +118,11 @@ TEST(CliOptions, CommandsAreTheFirstWordOnly) {
   EXPECT_EQ(Parsed({"analyze", "clip.mp4", "-o", "a"}).analysis_file, "a");
   EXPECT_EQ(Parsed({"render", "clip.mp4", "a", "-o", "b"}).analysis_file, "a");
   EXPECT_EQ(Parsed({"info", "--json", "clip.mp4"}).command, CommandId::kInfo);
+  const Invocation compare = Parsed({"compare", "a.mp4", "b.mp4", "--truth", "folder"});
+  EXPECT_EQ(compare.compare.input, "a.mp4");
+  EXPECT_EQ(compare.compare.output, "b.mp4");
+  EXPECT_EQ(compare.compare.truth, "folder");
+  EXPECT_EQ(Parsed({"simulate", "folder", "--seed", "5"}).simulate.seed, 5);
   const Invocation clip = Parsed({"./analyze"});
   EXPECT_EQ(clip.command, CommandId::kStabilize);
   EXPECT_EQ(clip.input, "./analyze");
