@@ -19,21 +19,19 @@ install(DIRECTORY igf stabilizer DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rsstab
   COMPONENT development FILES_MATCHING PATTERN "*.h"
   PATTERN "street" EXCLUDE PATTERN "*_residuals.h" EXCLUDE PATTERN "*_detail.h" EXCLUDE)
 
-if(TARGET rs-stabilize)
-  set(rsstab_docs ${PROJECT_BINARY_DIR}/generated/docs)
-  file(MAKE_DIRECTORY ${rsstab_docs})
-  add_custom_command(
-    OUTPUT ${rsstab_docs}/rs-stabilize.1 ${rsstab_docs}/rs-stabilize
-    COMMAND rs-stabilize --print-manual > ${rsstab_docs}/rs-stabilize.1
-    COMMAND rs-stabilize --print-bash-completion > ${rsstab_docs}/rs-stabilize
-    DEPENDS rs-stabilize VERBATIM
-    COMMENT "Writing manual page and shell completion")
-  add_custom_target(rsstab_docs ALL
-    DEPENDS ${rsstab_docs}/rs-stabilize.1 ${rsstab_docs}/rs-stabilize)
-  install(TARGETS rs-stabilize COMPONENT program)
-  install(FILES ${rsstab_docs}/rs-stabilize.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1
-    COMPONENT program)
-  install(FILES ${rsstab_docs}/rs-stabilize
-    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
-  install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
-endif()
+set(rsstab_docs ${PROJECT_BINARY_DIR}/generated/docs)
+file(MAKE_DIRECTORY ${rsstab_docs})
+add_custom_command(
+  OUTPUT ${rsstab_docs}/rs-stabilize.1 ${rsstab_docs}/rs-stabilize
+  COMMAND rs-stabilize --print-manual > ${rsstab_docs}/rs-stabilize.1
+  COMMAND rs-stabilize --print-bash-completion > ${rsstab_docs}/rs-stabilize
+  DEPENDS rs-stabilize VERBATIM
+  COMMENT "Writing manual page and shell completion")
+add_custom_target(rsstab_docs ALL
+  DEPENDS ${rsstab_docs}/rs-stabilize.1 ${rsstab_docs}/rs-stabilize)
+install(TARGETS rs-stabilize COMPONENT program)
+install(FILES ${rsstab_docs}/rs-stabilize.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1
+  COMPONENT program)
+install(FILES ${rsstab_docs}/rs-stabilize
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
+install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
