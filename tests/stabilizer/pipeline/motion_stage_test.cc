@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stabilizer/pipeline/motion_stage.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "igf/base/homography.h"
+
+namespace rsstab::pipeline {
+namespace {
+
+constexpr int kWidth = 640;
+constexpr int kHeight = 360;
+constexpr int kFrames = 60;
+
+// Frame n is skewed by this many px per row: every frame another way.
+double Skew(std::int64_t frame) { return 0.02 * std::sin(2.4 * static_cast<double>(frame)); }
+
+// A source that knows the skew.
+class SkewSource final : public RsMotionSource {
+ public:
+  std::string Name() const override { return "skew"; }
+  bool NeedsImage() const override { return false; }
+  Result<RsMotion> EstimateMotion(const FrameContext& frame) override {
+    if (frame.index == unknown_frame) {
+      return Fail(ErrorCode::kUntrustworthy, "a gap in the log");
+    }
+    RsMotion motion;
+    motion.field = MotionField(kWidth, kHeight, 2, 33);
+    for (int r = 0; r < 33; ++r) {
+      for (int c = 0; c < 2; ++c) {
+        const double rows = motion.field.VertexPosition(c, r).y() - motion.field.reference_row();
+        motion.field.At(c, r) = {static_cast<float>(Skew(frame.index) * rows), 0.0F};
+      }
+    }
+    return motion;
+  }
+
+  std::int64_t unknown_frame = -1;
+};
+
+// Recorded = corrected + G(corrected); this skew moves no row, so G at the recorded row is the
+// same.
+Eigen::Vector2f Recorded(const Eigen::Vector2d& corrected, std::int64_t frame) {
+  return Eigen::Vector2d(corrected.x() + Skew(frame) * (corrected.y() - (kHeight - 1) / 2.0),
+                         corrected.y())
+      .cast<float>();
+}
+
+std::vector<stabilizer::FrameAnalysis> AnalyzeSkewed(RsSelection& selection) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> x(10.0, kWidth - 10.0);
+  std::uniform_real_distribution<double> y(10.0, kHeight - 10.0);
+  auto stage = MotionStage::Create({}, {kWidth, kHeight, 30.0}, &selection, SilentLogger());
+  EXPECT_TRUE(stage);
+  std::vector<stabilizer::FrameAnalysis> result;
+  for (int n = 0; n < kFrames; ++n) {
+    FrameObservation o;
+    o.pts = n;
+    o.time_s = n / 30.0;
+    o.tracks.width = kWidth;
+    o.tracks.height = kHeight;
+    if (n > 0) {
+      for (int k = 0; k < 200; ++k) {
+        const Eigen::Vector2d p(x(random), y(random));
+        o.tracks.matches.push_back(
+            {Recorded(p, n - 1), Recorded(p + Eigen::Vector2d(1.0, 0.0), n)});
+      }
+      o.attempted_points = 200;
+    }
+    EXPECT_TRUE((*stage)->Push(o));
+    for (auto& f : (*stage)->TakeReady()) {
+      result.push_back(std::move(f));
+    }
+  }
+  EXPECT_TRUE((*stage)->Finish());
+  for (auto& f : (*stage)->TakeReady()) {
+    result.push_back(std::move(f));
+  }
+  EXPECT_EQ(result.size(), static_cast<std::size_t>(kFrames));
+  return result;
+}
+
+double LargestShear(const std::vector<stabilizer::FrameAnalysis>& frames) {
+  double largest = 0.0;
+  for (const auto& f : frames) {
+    largest = std::max(largest, 1.0 - AffineAnisotropy(f.rectified_from_output));
+  }
+  return largest;
+}
+
+// With the skew taken out of the tracks the camera pans steadily. With the wrong sign, or with one
+// frame's field used for the other, twice the skew or more is left and the path tries to undo it.
+TEST(MotionStage, TakesTheReadoutMotionOutOfTheTracks) {
+  RsSelection selection;
+  selection.source = std::make_unique<SkewSource>();
+  const auto frames = AnalyzeSkewed(selection);
+  for (const auto& f : frames) {
+    EXPECT_LT((f.rectified_from_output - Eigen::Matrix3d::Identity()).norm(), 2e-3);
+    EXPECT_EQ(f.rs_field.rows(), 33);
+  }
+  EXPECT_LT(LargestShear(frames), 1e-3);
+  RsSelection without;
+  EXPECT_GT(LargestShear(AnalyzeSkewed(without)), 3e-3);
+}
+
+TEST(MotionStage, AFrameTheSourceCannotTellIsLeftAsItIs) {
+  RsSelection selection;
+  auto source = std::make_unique<SkewSource>();
+  source->unknown_frame = 30;
+  selection.source = std::move(source);
+  const auto frames = AnalyzeSkewed(selection);
+  EXPECT_EQ(frames[30].rs_field.columns(), 0);
+  EXPECT_EQ(frames[31].rs_field.rows(), 33);
+}
+
+TEST(MotionStage, RefusesImpossibleClips) {
+  RsSelection selection;
+  EXPECT_FALSE(MotionStage::Create({}, {0, 360, 30.0}, &selection, SilentLogger()));
+  EXPECT_FALSE(MotionStage::Create({}, {640, 360, 0.0}, &selection, SilentLogger()));
+}
+
+}  // namespace
+}  // namespace rsstab::pipeline
