@@ -4,8 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <iterator>
+#include <string_view>
 
 #include "tests/support/test_paths.h"
 
@@ -90,6 +94,85 @@ TEST(AnalysisFile, RoundTrip) {
   const auto end = (*reader)->Next();
   ASSERT_TRUE(end);
   EXPECT_FALSE(*end);
+}
+
+template <typename T>
+T NumberAt(const std::string& bytes, std::size_t offset) {
+  T value{};
+  std::memcpy(&value, bytes.data() + offset, sizeof value);
+  return value;
+}
+
+// CRC-32 straight from its definition, bit by bit.
+std::uint32_t Crc32(std::string_view bytes) {
+  std::uint32_t crc = ~0U;
+  for (const char byte : bytes) {
+    crc ^= static_cast<std::uint8_t>(byte);
+    for (int bit = 0; bit < 8; ++bit) {
+      crc = (crc >> 1) ^ ((crc & 1U) != 0 ? 0xEDB88320U : 0U);
+    }
+  }
+  return ~crc;
+}
+
+// Every offset below is one of docs/analysis-file.md: a change of layout needs a new format number.
+TEST(AnalysisFile, BytesLieWhereTheFormatSays) {
+  const testing::TemporaryFolder folder;
+  const std::string bytes = ReadAll(WriteSample(folder));
+  constexpr std::size_t kHeader = 12;
+  constexpr std::size_t kPrefix = 8;
+  constexpr std::size_t kFixedPart = 150;
+  constexpr std::size_t kFooter = 40;
+  constexpr std::size_t kNoField = 4;
+  constexpr std::size_t kMesh = 12 + 4 * 17 * 17;
+  constexpr std::size_t kRsField = 12 + 4 * 9 * 33;
+  constexpr std::size_t kEvenBody = kFixedPart + 2 * kNoField;
+  constexpr std::size_t kOddBody = kFixedPart + kMesh + kRsField;
+  ASSERT_GT(bytes.size(), kHeader + kFooter);
+  EXPECT_EQ(bytes.substr(0, kHeader), std::string("RSSTABAN\1\0\0\0", kHeader));
+
+  EXPECT_EQ(NumberAt<std::uint32_t>(bytes, kHeader), kEvenBody);
+  const std::size_t record = kHeader + kPrefix + kEvenBody;  // frame 1
+  const std::size_t body = record + kPrefix;
+  ASSERT_EQ(NumberAt<std::uint32_t>(bytes, record), kOddBody);
+  EXPECT_EQ(NumberAt<std::uint32_t>(bytes, record + 4), Crc32(bytes.substr(body, kOddBody)));
+  EXPECT_EQ(NumberAt<std::int64_t>(bytes, body), 1001);
+  EXPECT_EQ(bytes.substr(body + 8, 64), std::string(64, '\x0A'));
+  EXPECT_EQ(bytes[body + 72], 0);  // kMesh
+  EXPECT_EQ(bytes[body + 73], 0);  // goes on
+  EXPECT_EQ(bytes[kHeader + kPrefix + 73], 1);
+  EXPECT_EQ(NumberAt<float>(bytes, body + 74), 0.94F);
+  const std::array<double, 9> update = {1.0, 0.0, 0.01, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  EXPECT_EQ((NumberAt<std::array<double, 9>>(bytes, body + 78)), update);
+
+  const std::size_t mesh = body + kFixedPart;
+  EXPECT_EQ(NumberAt<std::uint16_t>(bytes, mesh), 17);
+  EXPECT_EQ(NumberAt<std::uint16_t>(bytes, mesh + 2), 17);
+  EXPECT_FLOAT_EQ(NumberAt<float>(bytes, mesh + 4), 2.25F / 32767.0F);
+  EXPECT_EQ(NumberAt<float>(bytes, mesh + 8), 179.5F);
+  const std::size_t vertex = mesh + 12 + std::size_t{4} * (4 * 17 + 3);
+  EXPECT_EQ(NumberAt<std::int16_t>(bytes, vertex), 21845);  // 1.5 / 2.25 * 32767
+  EXPECT_EQ(NumberAt<std::int16_t>(bytes, vertex + 2), -32767);
+  const std::size_t rs_field = mesh + kMesh;
+  EXPECT_EQ(NumberAt<std::uint16_t>(bytes, rs_field), 9);
+  EXPECT_EQ(NumberAt<std::uint16_t>(bytes, rs_field + 2), 33);
+
+  const std::size_t summary = kHeader + kFrames * kPrefix + 3 * kEvenBody + 2 * kOddBody;
+  const std::size_t footer = bytes.size() - kFooter;
+  EXPECT_EQ(NumberAt<std::uint64_t>(bytes, footer), summary);
+  ASSERT_EQ(NumberAt<std::uint64_t>(bytes, footer + 8), footer - summary);
+  EXPECT_EQ(bytes[summary], '{');
+  EXPECT_EQ(NumberAt<std::uint32_t>(bytes, footer + 16),
+            Crc32(bytes.substr(summary, footer - summary)));
+  EXPECT_EQ(NumberAt<std::uint64_t>(bytes, footer + 20), kFrames);
+  EXPECT_EQ(NumberAt<std::uint32_t>(bytes, footer + 28), Crc32(bytes.substr(footer, 28)));
+  EXPECT_EQ(bytes.substr(footer + 32), "RSSTABEN");
+  for (const char* key :
+       {"program_version", "width", "height", "frames_per_second", "num_frames",
+        "smallest_crop_ratio", "fixed_zoom", "smallest_kept_ratio", "mean_kept_ratio", "rs_source",
+        "rs_reason", "readout_s", "gyro_offset_s", "camera", "options"}) {
+    EXPECT_NE(bytes.find('"' + std::string(key) + '"', summary), std::string::npos) << key;
+  }
 }
 
 TEST(AnalysisFile, NothingIsLeftWithoutFinish) {
