@@ -108,6 +108,7 @@ Result<pipeline::RsInputs> ReadRsInputs(const pipeline::StabilizeOptions& option
     return inputs;
   }
   inputs.gyro_origin = named ? options.gyro_file : clip.path;
+  inputs.gyro_shares_clock = !named;
   for (const std::string& note : recording->notes) {
     logger->warn("{}: {}", inputs.gyro_origin, note);
   }

@@ -14,6 +14,8 @@ namespace {
 
 // Where nobody knows the focal length: 64 degrees across.
 constexpr double kDefaultFocalRatio = 0.8;
+// Telemetry tracks lag or lead their video by exposure, readout and packet times.
+constexpr double kSharedClockSearchS = 0.25;
 
 struct CameraKnowledge {
   Camera camera;  // of the clip's size
@@ -56,15 +58,18 @@ RsSelection WithoutSource(const CameraKnowledge& known, std::string reason) {
 // Brings the log into step with the picture. A given offset is kept; the fit then only finds what
 // else is unknown, and may fail without harm.
 Result<igf::GyroSyncResult> Synchronize(const StabilizeOptions& options,
-                                        const CameraKnowledge& known, const igf::GyroLog& log,
+                                        const CameraKnowledge& known, const RsInputs& inputs,
                                         std::span<const PointTracks> tracks) {
   igf::GyroSyncOptions sync;
   sync.focal_is_known = known.focal_is_known;
+  if (inputs.gyro_shares_clock) {
+    sync.search_s = kSharedClockSearchS;
+  }
   if (options.gyro_offset_s) {
     sync.initial_offset_s = *options.gyro_offset_s;
     sync.search_s = 0.0;
   }
-  auto result = igf::SynchronizeGyro(tracks, log, known.camera, sync);
+  auto result = igf::SynchronizeGyro(tracks, *inputs.gyro, known.camera, sync);
   if (!options.gyro_offset_s) {
     return result;
   }
@@ -99,7 +104,7 @@ Status CheckOverlap(const igf::GyroLog& log, double offset_s, std::span<const Po
 
 Result<RsSelection> SelectGyro(const StabilizeOptions& options, CameraKnowledge known,
                                const RsInputs& inputs, std::span<const PointTracks> tracks) {
-  const auto sync = Synchronize(options, known, *inputs.gyro, tracks);
+  const auto sync = Synchronize(options, known, inputs, tracks);
   if (!sync) {
     return Propagate(sync.error(), inputs.gyro_origin);
   }

@@ -20,8 +20,10 @@ namespace rsstab::pipeline {
 struct RsInputs {
   std::optional<igf::GyroLog> gyro;  // camera axes, its own clock
   std::string gyro_origin;           // file or track it came from, for messages
-  std::optional<Camera> camera;      // any size; rescaled to the clip's
-  std::optional<double> readout_s;   // from the telemetry, when it says so
+  // The log was recorded into the clip: both clocks agree but for a fraction of a second.
+  bool gyro_shares_clock = false;
+  std::optional<Camera> camera;     // any size; rescaled to the clip's
+  std::optional<double> readout_s;  // from the telemetry, when it says so
 };
 
 // True when the choice can only be made once the tracks of the clip are known (a gyro log must be
