@@ -53,6 +53,9 @@ function(rsstab_test file)
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
+  if("slow" IN_LIST ARG_LABELS)
+    set_tests_properties(${folder}/${stem} PROPERTIES COST 100)  # starts first, beside the quick ones
+  endif()
   set_tests_properties(${folder}/${stem} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT}
     SKIP_REGULAR_EXPRESSION "\\[  PASSED  \\] 0 tests\\.")
 endfunction()

@@ -200,6 +200,8 @@ int Muxer::Start(const AVOutputFormat& format, const MuxerVideo& video, const So
     return code;
   }
   AvDictionary dictionary;
+  // No random identifiers: the same input gives the same bytes.
+  context->flags |= AVFMT_FLAG_BITEXACT;
   if (keeps_zero_) {
     context->avoid_negative_ts = AVFMT_AVOID_NEG_TS_DISABLED;
   }

@@ -214,10 +214,14 @@ class Remuxer {
         WriteBytes(subtitle_, {1, 1000}, 100 + 150 * i, 100, {text.begin(), text.end()});
       }
     }
-    if (data_ >= 0) {
+    if (data_ >= 0 && recipe_.data_packets.empty()) {
       for (int i = 0; i < duration_s; ++i) {
         WriteBytes(data_, {1, 1000}, i * 1000, 1000, RandomBytes(64, static_cast<unsigned>(i)));
       }
+    }
+    for (std::size_t i = 0; data_ >= 0 && i < recipe_.data_packets.size(); ++i) {
+      WriteBytes(data_, {1, 1000}, static_cast<std::int64_t>(i) * 1000, 1000,
+                 recipe_.data_packets[i]);
     }
   }
 

@@ -44,6 +44,8 @@ struct RemuxRecipe {
   std::string subtitle_codec;    // "subrip", "mov_text", ...; empty: none
   bool with_attachment = false;
   bool with_data = false;  // a "gpmd" track, one packet a second (MP4 only)
+  // What its packets hold; empty: 64 random bytes each, to the end of the clip.
+  std::vector<std::vector<std::uint8_t>> data_packets;
   bool with_chapters = false;
   std::map<std::string, std::string> metadata;
   std::optional<double> rotation_degrees;  // counter-clockwise
