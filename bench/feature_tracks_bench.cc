@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the luma of a 1920x1080 frame to its tracks; wall time on all cores. Budget: 12 ms a frame,
-// of which 2 ms are the proxy's.
+// From the luma of a 1920x1080 frame to its tracks, wall and processor time of all threads. Budget:
+// 12 ms of processor time a frame, of which 2 ms are the proxy's.
 //   feature_tracks_bench --benchmark_repetitions=5 --benchmark_report_aggregates_only=true
 
 #include <benchmark/benchmark.h>
