@@ -37,6 +37,7 @@ std::vector<Frame> StreetFrames(int bit_depth) {
           .value();
   WorkerPool pool(ResolveThreadCount(0));
   std::vector<Frame> frames;
+  frames.reserve(kFrames);
   for (int i = 0; i < kFrames; ++i) {
     frames.push_back(
         simulator.RenderRs(i * kFrameIntervalS, GrayLayout(bit_depth), pool, i).value());

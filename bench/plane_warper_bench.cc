@@ -28,7 +28,7 @@ void FillTexture(Frame& frame) {
         // Odd bytes are the upper halves of deep samples.
         const bool upper = frame.layout.bit_depth > 8 && x % 2 == 1;
         plane.data[y * plane.stride + x] =
-            static_cast<std::uint8_t>(upper ? y & 1 : (x * 7 + y * 13) & 0xFF);
+            static_cast<std::uint8_t>(upper ? y & 1 : (x * 7 + std::ptrdiff_t{13} * y) & 0xFF);
       }
     }
   }

@@ -20,7 +20,7 @@ constexpr int kFrames = 5;
 
 FrameAnalysis SomeFrame(int i) {
   FrameAnalysis frame;
-  frame.pts = 1001 * i;
+  frame.pts = std::int64_t{1001} * i;
   frame.fingerprint.fill(static_cast<std::uint8_t>(10 * i));
   frame.rung = MotionRung::kMesh;
   frame.path_begins = i == 0;
@@ -51,7 +51,7 @@ ClipAnalysis SomeClip() {
 }
 
 std::filesystem::path WriteSample(const testing::TemporaryFolder& folder) {
-  const auto path = folder / "clip.rsa";
+  auto path = folder / "clip.rsa";
   auto writer = AnalysisWriter::Create(path.string());
   EXPECT_TRUE(writer);
   for (int i = 0; i < kFrames; ++i) {
