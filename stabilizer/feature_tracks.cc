@@ -51,11 +51,15 @@ struct FeatureTracker::Impl {
     const int cell = options.cell_px;
     const int columns = (size.width + cell - 1) / cell;
     const int rows = (size.height + cell - 1) / cell;
-    std::vector<bool> taken(static_cast<std::size_t>(columns * rows), false);
+    const auto index_of = [columns](int column, int row) {
+      return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+             static_cast<std::size_t>(column);
+    };
+    std::vector<bool> taken(index_of(0, rows), false);
     const auto cell_of = [&](const cv::Point2f& p) {
       const int c = std::clamp(static_cast<int>(p.x) / cell, 0, columns - 1);
       const int r = std::clamp(static_cast<int>(p.y) / cell, 0, rows - 1);
-      return static_cast<std::size_t>(r * columns + c);
+      return index_of(c, r);
     };
     // Two points that drifted into one cell see the same thing: keep the elder.
     std::erase_if(points, [&](const cv::Point2f& p) {
@@ -72,7 +76,7 @@ struct FeatureTracker::Impl {
         std::max(options.min_corner_strength, options.min_corner_quality * strongest));
     for (int r = 0; r < rows; ++r) {
       for (int c = 0; c < columns; ++c) {
-        if (taken[static_cast<std::size_t>(r * columns + c)]) {
+        if (taken[index_of(c, r)]) {
           continue;
         }
         const int x0 = std::max(c * cell, options.border_px);

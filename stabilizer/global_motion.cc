@@ -156,7 +156,7 @@ std::size_t OccupiedZones(std::span<const RectifiedMatch> matches,
       const auto column = std::clamp(static_cast<int>((matches[i].from.x() + 0.5) * 3.0), 0, 2);
       const auto row =
           std::clamp(static_cast<int>((matches[i].from.y() / half_height + 1.0) * 1.5), 0, 2);
-      zones.set(static_cast<std::size_t>(row * 3 + column));
+      zones.set(static_cast<std::size_t>(row) * 3 + static_cast<std::size_t>(column));
     }
   }
   return zones.count();

@@ -65,6 +65,7 @@ Result<GrayImage> MakeLumaProxy(const FrameView& frame) {
 
 LumaFingerprint FingerprintOf(const GrayImage& image) {
   LumaFingerprint print{};
+  std::size_t next = 0;
   for (int row = 0; row < kFingerprintSide; ++row) {
     const int y0 = row * image.height / kFingerprintSide;
     const int y1 = std::max(y0 + 1, (row + 1) * image.height / kFingerprintSide);
@@ -80,8 +81,7 @@ LumaFingerprint FingerprintOf(const GrayImage& image) {
         }
       }
       const std::int64_t count = static_cast<std::int64_t>(y1 - y0) * (x1 - x0);
-      print[static_cast<std::size_t>(row * kFingerprintSide + column)] =
-          static_cast<std::uint8_t>((sum + count / 2) / count);
+      print[next++] = static_cast<std::uint8_t>((sum + count / 2) / count);
     }
   }
   return print;

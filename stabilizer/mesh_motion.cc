@@ -21,7 +21,7 @@ constexpr std::size_t kMinMatches = 12;
 // object that moves by itself, and the camera path must not follow it.
 constexpr double kMaxLocalMotion = 4.0 * kPx;
 // Sub-frames for the local vote, and how far a match may stand from its sub-frame's median.
-constexpr int kSubFrames = 4;
+constexpr std::size_t kSubFrames = 4;
 constexpr double kLocalTolerance = 3.0;           // median absolute deviations
 constexpr double kMinLocalTolerance = 0.6 * kPx;  // tracking noise and a slope inside the sub-frame
 // alpha = kShapeWeight (1 + kUnsupportedBoost / (1 + n)) for a cell with n matches: an empty cell
@@ -65,17 +65,23 @@ double Median(std::vector<double>& values) {
   return *middle;
 }
 
+// Which sub-frame along one side, for a position given as a share of that side.
+std::size_t SubFrame(double share) {
+  const double position = std::clamp(share, 0.0, 1.0) * static_cast<double>(kSubFrames);
+  return std::min(static_cast<std::size_t>(position), kSubFrames - 1);
+}
+
 struct LocalSample {
   MeshGrid::Location location;
   Eigen::Vector2d displacement;  // beyond the global motion
-  int sub_frame = 0;
+  std::size_t sub_frame = 0;
 };
 
 // Second vote, per sub-frame: leaves out what moves unlike its neighbours.
 std::vector<LocalSample> RejectLocally(const std::vector<LocalSample>& samples) {
   std::array<std::vector<std::size_t>, kSubFrames * kSubFrames> members;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    members[static_cast<std::size_t>(samples[i].sub_frame)].push_back(i);
+    members[samples[i].sub_frame].push_back(i);
   }
   std::vector<LocalSample> kept;
   kept.reserve(samples.size());
@@ -113,7 +119,7 @@ struct MeshMotionSolver::Impl {
   explicit Impl(const MeshGrid& mesh)
       : grid(mesh), shape(CellShapeEnergy(1.0 / mesh.columns(), mesh.aspect() / mesh.rows())) {
     // Fix the sparsity pattern once: every cell couples its four vertices, x with y.
-    const auto n = static_cast<Eigen::Index>(2 * grid.num_vertices());
+    const auto n = 2 * static_cast<Eigen::Index>(grid.num_vertices());
     std::vector<Eigen::Triplet<double>> triplets;
     for (int cell = 0; cell < grid.num_cells(); ++cell) {
       const auto dofs = CellDofs(cell);
@@ -175,10 +181,8 @@ std::vector<Eigen::Vector2d> MeshMotionSolver::Solve(std::span<const RectifiedMa
     if (displacement.norm() > kMaxLocalMotion) {
       continue;
     }
-    const int column =
-        std::clamp(static_cast<int>((m.from.x() + 0.5) * kSubFrames), 0, kSubFrames - 1);
-    const int row = std::clamp(static_cast<int>((m.from.y() / s.grid.aspect() + 0.5) * kSubFrames),
-                               0, kSubFrames - 1);
+    const std::size_t column = SubFrame(m.from.x() + 0.5);
+    const std::size_t row = SubFrame(m.from.y() / s.grid.aspect() + 0.5);
     samples.push_back({s.grid.Locate(m.from), displacement, row * kSubFrames + column});
   }
   samples = RejectLocally(samples);

@@ -66,11 +66,11 @@ struct RealRange {
 
 // A number stored as `text * scale` (scale 0.001 stores a value given in ms as seconds).
 template <typename Options, typename Field>
-OptionSpec<Options> RealOption(std::string name, std::string value_name, Field Options::*field,
-                               RealRange range, double scale = 1.0) {
+OptionSpec<Options> RealOption(const std::string& name, const std::string& value_name,
+                               Field Options::*field, RealRange range, double scale = 1.0) {
   OptionSpec<Options> spec;
   spec.name = name;
-  spec.value_name = std::move(value_name);
+  spec.value_name = value_name;
   spec.range = range.Text();
   spec.set = [name, field, range, scale](Options& options, const std::string& text) -> Status {
     const std::optional<double> value = ParseReal(text);
@@ -89,14 +89,14 @@ OptionSpec<Options> RealOption(std::string name, std::string value_name, Field O
 
 // A whole number.
 template <typename Options, typename Field>
-OptionSpec<Options> IntegerOption(std::string name, std::string value_name, Field Options::*field,
-                                  std::int64_t min, std::int64_t max) {
+OptionSpec<Options> IntegerOption(const std::string& name, const std::string& value_name,
+                                  Field Options::*field, std::int64_t min, std::int64_t max) {
   OptionSpec<Options> spec;
   const RealRange range{static_cast<double>(min), max == std::numeric_limits<std::int64_t>::max()
                                                       ? std::numeric_limits<double>::infinity()
                                                       : static_cast<double>(max)};
   spec.name = name;
-  spec.value_name = std::move(value_name);
+  spec.value_name = value_name;
   spec.range = range.Text();
   spec.set = [name, field, min, max, range](Options& options, const std::string& text) -> Status {
     const std::optional<std::int64_t> value = ParseInteger(text);
@@ -111,7 +111,7 @@ OptionSpec<Options> IntegerOption(std::string name, std::string value_name, Fiel
 }
 
 template <typename Options>
-OptionSpec<Options> SwitchOption(std::string name, bool Options::*field) {
+OptionSpec<Options> SwitchOption(const std::string& name, bool Options::*field) {
   OptionSpec<Options> spec;
   spec.name = name;
   spec.set = [name, field](Options& options, const std::string& text) -> Status {
@@ -130,11 +130,11 @@ OptionSpec<Options> SwitchOption(std::string name, bool Options::*field) {
 
 // Any text, a file name for example.
 template <typename Options>
-OptionSpec<Options> TextOption(std::string name, std::string value_name,
+OptionSpec<Options> TextOption(const std::string& name, const std::string& value_name,
                                std::string Options::*field) {
   OptionSpec<Options> spec;
-  spec.name = std::move(name);
-  spec.value_name = std::move(value_name);
+  spec.name = name;
+  spec.value_name = value_name;
   spec.set = [field](Options& options, const std::string& text) -> Status {
     options.*field = text;
     return {};
