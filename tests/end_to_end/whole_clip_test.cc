@@ -132,6 +132,25 @@ TEST_F(WholeClip, PicturesDoNotDependOnThreads) {
   }
 }
 
+TEST_F(WholeClip, ExtremeSettingsWork) {
+  const std::vector<std::vector<std::string>> settings = {
+      {"--crop", "1"},        {"--crop", "0.1"},
+      {"--zoom", "1"},        {"--zoom", "10"},
+      {"--zoom", "fixed"},    {"--smoothness", "0"},
+      {"--smoothness", "10"}, {"--mesh", "1x1"},
+      {"--mesh", "64x64"},    {"--tripod"},
+      {"--threads", "64"},    {"--interpolation", "bilinear"},
+      {"--rs", "off"},        {"--interpolation", "lanczos"}};
+  for (std::vector<std::string> arguments : settings) {
+    SCOPED_TRACE(arguments.front() + " " + arguments.back());
+    arguments.insert(arguments.end(), {Path("plain.mp4"), "-o", Path("out.mp4"), "--overwrite"});
+    RunOrFail(arguments);
+    const auto after = ReadClip(Path("out.mp4"));
+    ASSERT_TRUE(after) << after.error().message;
+    EXPECT_EQ(after->frames.size(), 45U);
+  }
+}
+
 TEST_F(WholeClip, InfoTellsWhatIsThere) {
   const std::string text = RunOrFail({"info", Path("plain.mp4")}).output;
   EXPECT_THAT(text, ::testing::HasSubstr("160x120"));
