@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kHalfStencil = 4;
 // A polynomial of degree seven swings between unevenly spaced nodes; beyond this ratio of the
 // longest to the shortest interval a straight line is the safer guess.
-constexpr double kMaxUnevenness = 1.5;
+constexpr double kMaxUnevenness = 2.0;
 // A low pass nearer to the sampling rate has too few samples under its kernel.
 constexpr double kMinOversampling = 3.0;
 

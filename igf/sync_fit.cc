@@ -4,16 +4,19 @@
 #include <ceres/autodiff_cost_function.h>
 #include <ceres/crs_matrix.h>
 #include <ceres/loss_function.h>
+#include <ceres/ordered_groups.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <memory>
 #include <vector>
 
+#include "igf/sync_covariance.h"
 #include "igf/sync_residuals.h"
 
 namespace rsstab::igf {
@@ -26,7 +29,9 @@ constexpr std::array<int, kBlocks> kBlockSize = {1, 3, 1, 1, 1};
 constexpr std::size_t kParameters = 7;
 
 // Weak priors: what holds for cameras at large, one standard deviation.
-constexpr double kBiasSigma_rad_s = 0.05;  // 3 deg/s
+constexpr double kBiasSigma_rad_s = 0.03;  // 1.7 deg/s
+// A moving camera's parallax looks like a bias: its prior must hold against all matches together.
+constexpr double kBiasPriorPerMatch_px2 = 0.003;
 constexpr double kLogFocalSigma = 0.4;
 constexpr double kReadoutPriorFrames = 0.5;
 constexpr double kReadoutSigmaFrames = 0.5;
@@ -40,13 +45,20 @@ constexpr double kFirstLossScale_px = 4.0;
 constexpr double kMinLossScale_px = 0.3;
 constexpr double kLossScaleSigmas = 2.5;
 constexpr double kSigmaPerMedian = 1.4826 / 1.414;  // median length of a 2-D error -> per axis
+// Drifts: one for every cell of the picture and window of time. Worth so many matches' doubt, and
+// free to grow once they exceed the loss scale: far scenery has none, near ground has a lot.
+constexpr int kDriftCells = 4;
+constexpr double kDriftWindow_s = 1.0;
+constexpr double kDriftPriorMatches = 12.0;
+constexpr double kDriftLossScale_px = 0.2;
+
 // So many pairs in a row may err alike.
 constexpr std::size_t kErrorLag = 5;
 // More motion than this says no more about the fit (a cut, for one, has any).
 constexpr double kMaxPairMotion_px = 10.0;
 
 using TrackCost =
-    ceres::AutoDiffCostFunction<SyncTrackResidual, SyncTrackResidual::kResiduals, 1, 3, 1, 1, 1>;
+    ceres::AutoDiffCostFunction<SyncTrackResidual, SyncTrackResidual::kResiduals, 1, 3, 1, 1, 1, 2>;
 
 std::array<double, kParameters> Pack(const SyncState& state) {
   return {state.offset_s,  state.bias_rad_s.x(), state.bias_rad_s.y(), state.bias_rad_s.z(),
@@ -74,11 +86,14 @@ double MedianOfCovered(const SyncFit& fit) {
   return *middle;
 }
 
+constexpr std::array<double, 2> kNoDrift = {0.0, 0.0};
+
 class SyncProblem {
  public:
   SyncProblem(std::span<const SyncPair> pairs, const OrientationTrack& track,
               const SyncState& start, const SyncFitOptions& options)
       : options_(options), start_(start), parameters_(Pack(start)) {
+    std::map<std::array<int, 3>, std::size_t> drift_of_cell;
     const double margin =
         options.offset_radius_s +
         0.5 * (options.fit_readout ? options.frame_interval_s : std::abs(start.readout_s));
@@ -89,7 +104,14 @@ class SyncProblem {
       const std::size_t stride =
           (pair.matches.size() + options.max_matches - 1) / options.max_matches;
       for (std::size_t i = 0; i < pair.matches.size(); i += stride) {
-        residuals_.emplace_back(track, pair.from_time_s, pair.to_time_s, pair.matches[i]);
+        const SyncMatch& match = pair.matches[i];
+        residuals_.emplace_back(track, pair.from_time_s, pair.to_time_s, match);
+        const std::array<int, 3> cell = {
+            static_cast<int>(std::floor(pair.from_time_s / kDriftWindow_s)),
+            static_cast<int>(std::floor((match.from_row_share + 0.5) * kDriftCells)),
+            static_cast<int>(std::floor((match.column_share + 0.5) * kDriftCells))};
+        drift_of_match_.push_back(
+            drift_of_cell.try_emplace(cell, drift_of_cell.size()).first->second);
         motion_sq_.push_back(
             ((pair.matches[i].to - pair.matches[i].from) * pair.matches[i].px_per_unit)
                 .squaredNorm());
@@ -98,6 +120,8 @@ class SyncProblem {
       groups_.push_back(group);
       num_covered_ += group.is_covered ? 1 : 0;
     }
+    // Never resized again: Ceres keeps pointers into it.
+    drifts_px_.resize(drift_of_cell.size(), Eigen::Vector2d::Zero());
   }
 
   [[nodiscard]] std::size_t num_covered() const { return num_covered_; }
@@ -106,7 +130,17 @@ class SyncProblem {
     ceres::Problem problem;
     Build(loss_scale_px, problem);
     ceres::Solver::Options solver;
-    solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+    solver.linear_solver_type = ceres::DENSE_SCHUR;
+    auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+    for (Eigen::Vector2d& drift : drifts_px_) {
+      if (problem.HasParameterBlock(drift.data())) {
+        ordering->AddElementToGroup(drift.data(), 0);
+      }
+    }
+    for (std::size_t b = 0; b < kBlocks; ++b) {
+      ordering->AddElementToGroup(Parameter(b), 1);
+    }
+    solver.linear_solver_ordering = ordering;
     solver.max_num_iterations = options_.max_iterations;
     solver.function_tolerance = 1e-8;
     solver.parameter_tolerance = 1e-9;
@@ -131,7 +165,7 @@ class SyncProblem {
       for (std::size_t i = group.begin; group.is_covered && i < group.end; ++i) {
         Eigen::Vector2d r;
         if (residuals_[i](Value(kOffset), Value(kBias), Value(kLogFocal), Value(kCurvature),
-                          Value(kReadout), r.data())) {
+                          Value(kReadout), kNoDrift.data(), r.data())) {
           residual_sq[i - group.begin] = r.squaredNorm();
         }
       }
@@ -147,16 +181,18 @@ class SyncProblem {
     fit.rms_px = std::sqrt(residual_sum / static_cast<double>(num_covered_));
   }
 
-  // Standard deviations from the sandwich B^-1 M B^-1: B the robustified normal matrix, M the sum
-  // over pairs of g g^T with g the pair's gradient, and of its products with the next few pairs'
-  // (Newey and West 1987). Unlike s^2 B^-1 it holds when the errors of a pair's tracks, and of
-  // neighbouring pairs, go together (parallax, gyro noise, unmodelled lens or motion).
+  // Standard deviations that hold when errors go together: see sync_covariance.h.
   [[nodiscard]] SyncState Sigma(double loss_scale_px) {
     ceres::Problem problem;
     Build(loss_scale_px, problem);
     ceres::Problem::EvaluateOptions evaluate;
     for (std::size_t b = 0; b < kBlocks; ++b) {
       evaluate.parameter_blocks.push_back(Parameter(b));
+    }
+    for (Eigen::Vector2d& drift : drifts_px_) {
+      if (problem.HasParameterBlock(drift.data())) {
+        evaluate.parameter_blocks.push_back(drift.data());
+      }
     }
     std::vector<double> residuals;
     ceres::CRSMatrix jacobian;
@@ -165,54 +201,22 @@ class SyncProblem {
                       std::numeric_limits<double>::infinity(),
                       std::numeric_limits<double>::infinity(),
                       std::numeric_limits<double>::infinity()};
-    if (!problem.Evaluate(evaluate, nullptr, &residuals, nullptr, &jacobian) ||
-        jacobian.num_cols != static_cast<int>(kParameters)) {
+    if (!problem.Evaluate(evaluate, nullptr, &residuals, nullptr, &jacobian)) {
       return unknown;
     }
-    Eigen::MatrixXd j = Eigen::MatrixXd::Zero(jacobian.num_rows, jacobian.num_cols);
-    for (int row = 0; row < jacobian.num_rows; ++row) {
-      for (int k = jacobian.rows[static_cast<std::size_t>(row)];
-           k < jacobian.rows[static_cast<std::size_t>(row) + 1]; ++k) {
-        j(row, jacobian.cols[static_cast<std::size_t>(k)]) =
-            jacobian.values[static_cast<std::size_t>(k)];
-      }
-    }
-    const Eigen::Map<const Eigen::VectorXd> r(residuals.data(), jacobian.num_rows);
-    // Constant blocks leave empty columns: give them a one on the diagonal and take it out again.
-    Eigen::MatrixXd bread = j.transpose() * j;
-    for (Eigen::Index i = 0; i < bread.rows(); ++i) {
-      if (bread(i, i) == 0.0) {
-        bread(i, i) = 1.0;
-      }
-    }
-    const auto n = static_cast<double>(num_covered_);
-    std::vector<Eigen::VectorXd> gradients;
-    Eigen::Index begin = 0;
+    std::vector<int> rows_of_group;
     for (const Group& group : groups_) {
       if (group.is_covered) {
-        const auto size = static_cast<Eigen::Index>(2 * (group.end - group.begin));
-        gradients.emplace_back(j.middleRows(begin, size).transpose() * r.segment(begin, size));
-        begin += size;
+        rows_of_group.push_back(static_cast<int>(SyncTrackResidual::kResiduals) *
+                                static_cast<int>(group.end - group.begin));
       }
     }
-    Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(bread.rows(), bread.cols());
-    for (std::size_t i = 0; i < gradients.size(); ++i) {
-      meat += gradients[i] * gradients[i].transpose();
-      for (std::size_t lag = 1; lag <= kErrorLag && lag <= i; ++lag) {
-        const double weight = 1.0 - static_cast<double>(lag) / (kErrorLag + 1.0);
-        const Eigen::MatrixXd cross = gradients[i] * gradients[i - lag].transpose();
-        meat += weight * (cross + cross.transpose());
-      }
-    }
-    meat *= n / (n - 1.0);
-    const Eigen::FullPivLU<Eigen::MatrixXd> lu(bread);
-    if (!lu.isInvertible()) {
+    const auto sigma = SandwichSigma(jacobian, residuals, rows_of_group, kParameters, kErrorLag);
+    if (!sigma) {
       return unknown;
     }
-    const Eigen::MatrixXd inverse = lu.inverse();
-    const Eigen::VectorXd sigma = (inverse * meat * inverse).diagonal().cwiseMax(0.0).cwiseSqrt();
     std::array<double, kParameters> packed{};
-    std::copy(sigma.begin(), sigma.end(), packed.begin());
+    std::copy(sigma->begin(), sigma->end(), packed.begin());
     return Unpack(packed);
   }
 
@@ -258,15 +262,28 @@ class SyncProblem {
       for (std::size_t i = group.begin; group.is_covered && i < group.end; ++i) {
         problem.AddResidualBlock(new TrackCost(new SyncTrackResidual(residuals_[i])), loss,
                                  Parameter(kOffset), Parameter(kBias), Parameter(kLogFocal),
-                                 Parameter(kCurvature), Parameter(kReadout));
+                                 Parameter(kCurvature), Parameter(kReadout),
+                                 drifts_px_[drift_of_match_[i]].data());
+      }
+    }
+    auto* drift_loss = new ceres::CauchyLoss(kDriftLossScale_px * std::sqrt(kDriftPriorMatches));
+    for (Eigen::Vector2d& drift : drifts_px_) {
+      if (problem.HasParameterBlock(drift.data())) {
+        problem.AddResidualBlock(
+            new ceres::AutoDiffCostFunction<SyncPriorResidual<2>, 2, 2>(
+                new SyncPriorResidual<2>(0.0, 1.0 / std::sqrt(kDriftPriorMatches))),
+            drift_loss, drift.data());
       }
     }
     const double radius = options_.offset_radius_s;
     problem.SetParameterLowerBound(Parameter(kOffset), 0, start_.offset_s - radius);
     problem.SetParameterUpperBound(Parameter(kOffset), 0, start_.offset_s + radius);
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<SyncPriorResidual<3>, 3, 3>(
-                                 new SyncPriorResidual<3>(0.0, kBiasSigma_rad_s)),
-                             nullptr, Parameter(kBias));
+    const double bias_weight =
+        kBiasPriorPerMatch_px2 * static_cast<double>(std::max<std::size_t>(residuals_.size(), 1));
+    problem.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<SyncPriorResidual<3>, 3, 3>(
+            new SyncPriorResidual<3>(0.0, kBiasSigma_rad_s / std::sqrt(bias_weight))),
+        nullptr, Parameter(kBias));
     const double frame = options_.frame_interval_s;
     Constrain(problem, kLogFocal, options_.fit_focal, -kMaxLogFocal, kMaxLogFocal, 0.0,
               kLogFocalSigma);
@@ -280,6 +297,8 @@ class SyncProblem {
   SyncState start_;
   std::array<double, kParameters> parameters_;
   std::vector<SyncTrackResidual> residuals_;
+  std::vector<std::size_t> drift_of_match_;  // index into drifts_px_, for each of residuals_
+  std::vector<Eigen::Vector2d> drifts_px_;
   std::vector<double> motion_sq_;  // squared displacement of each match, px^2
   std::vector<Group> groups_;
   std::size_t num_covered_ = 0;

@@ -51,7 +51,7 @@ std::optional<double> PxPerUnit(const CameraProjector& lens, const Eigen::Vector
 }
 
 std::optional<SyncMatch> PrepareMatch(const CameraProjector& lens, const PointMatch& match,
-                                      int height) {
+                                      int width, int height) {
   const auto from = ToPlane(lens, match.from.cast<double>());
   const auto to = ToPlane(lens, match.to.cast<double>());
   if (!from || !to) {
@@ -64,7 +64,9 @@ std::optional<SyncMatch> PrepareMatch(const CameraProjector& lens, const PointMa
   const auto row_share = [height](float row) {
     return RowExposureTime(0.0, static_cast<double>(row), height, 1.0);
   };
-  return SyncMatch{*from, *to, row_share(match.from.y()), row_share(match.to.y()), *scale};
+  const double column_share = (static_cast<double>(match.from.x()) + 0.5) / width - 0.5;
+  return SyncMatch{*from,        *to,   row_share(match.from.y()), row_share(match.to.y()),
+                   column_share, *scale};
 }
 
 }  // namespace
@@ -102,7 +104,7 @@ Result<std::vector<SyncPair>> PrepareSyncPairs(std::span<const PointTracks> trac
     std::vector<double> dy;
     for (std::size_t k = 0; k < source.matches.size(); k += stride) {
       const PointMatch& match = source.matches[k];
-      if (const auto prepared = PrepareMatch(lens, match, height)) {
+      if (const auto prepared = PrepareMatch(lens, match, width, height)) {
         pair.matches.push_back(*prepared);
         dx.push_back(static_cast<double>(match.to.x()) - static_cast<double>(match.from.x()));
         dy.push_back(static_cast<double>(match.to.y()) - static_cast<double>(match.from.y()));

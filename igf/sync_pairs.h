@@ -22,7 +22,8 @@ struct SyncMatch {
   // Exposure time = middle row's time + readout * row share, in (-0.5, 0.5).
   double from_row_share = 0.0;
   double to_row_share = 0.0;
-  double px_per_unit = 1.0;  // local scale of the image plane at `to`, px of the tracks' size
+  double column_share = 0.0;  // where `from` lies across the image, in (-0.5, 0.5)
+  double px_per_unit = 1.0;   // local scale of the image plane at `to`, px of the tracks' size
 };
 
 // The usable matches between two consecutive frames.

@@ -37,7 +37,8 @@ template <typename T>
 // Row-timed track residual, px: pi(K R(t') R(t)^T K^-1 x) - x', with t and t' the exposure times of
 // the match's two rows on the gyro's clock.
 // Parameters: offset (s, t_video = t_gyro + offset), gyro bias (3, rad/s), logarithm of the true
-// over the assumed focal length, curvature of the lens, readout (s).
+// over the assumed focal length, curvature of the lens, readout (s), and the drift (2, px) that the
+// scene adds in this part of the picture for a while (parallax of a camera that moves steadily).
 class SyncTrackResidual {
  public:
   static constexpr int kResiduals = 2;
@@ -47,9 +48,11 @@ class SyncTrackResidual {
                     const SyncMatch& match)
       : track_(&track), from_time_s_(from_time_s), to_time_s_(to_time_s), match_(match) {}
 
+  [[nodiscard]] const SyncMatch& match() const { return match_; }
+
   template <typename T>
   bool operator()(const T* offset_s, const T* bias_rad_s, const T* log_focal, const T* curvature,
-                  const T* readout_s, T* residual_px) const {
+                  const T* readout_s, const T* drift_px, T* residual_px) const {
     using std::exp;
     const T from_s = from_time_s_ + readout_s[0] * match_.from_row_share - offset_s[0];
     const T to_s = to_time_s_ + readout_s[0] * match_.to_row_share - offset_s[0];
@@ -75,8 +78,8 @@ class SyncTrackResidual {
       return false;
     }
     const Eigen::Matrix<T, 2, 1> to = BendPlane(seen, curvature[0]);
-    residual_px[0] = match_.px_per_unit * (focal * to.x() - match_.to.x());
-    residual_px[1] = match_.px_per_unit * (focal * to.y() - match_.to.y());
+    residual_px[0] = match_.px_per_unit * (focal * to.x() - match_.to.x()) + drift_px[0];
+    residual_px[1] = match_.px_per_unit * (focal * to.y() - match_.to.y()) + drift_px[1];
     return true;
   }
 

@@ -20,6 +20,7 @@ constexpr double kSharedClockSearchS = 0.25;
 struct CameraKnowledge {
   Camera camera;  // of the clip's size
   bool focal_is_known = false;
+  bool lens_is_known = false;
 };
 
 // The user's word goes before the camera file, that before the telemetry, that before a guess.
@@ -29,6 +30,7 @@ CameraKnowledge WhatIsKnown(const StabilizeOptions& options, const ClipGeometry&
   if (inputs.camera) {
     known.camera = inputs.camera->Rescaled(clip.width, clip.height);
     known.focal_is_known = true;
+    known.lens_is_known = true;
   } else {
     known.camera = Camera::Pinhole(clip.width, clip.height, kDefaultFocalRatio * clip.width);
   }
@@ -65,6 +67,7 @@ Result<igf::GyroSyncResult> Synchronize(const StabilizeOptions& options,
   if (inputs.gyro_shares_clock) {
     sync.search_s = kSharedClockSearchS;
   }
+  sync.lens_is_known = known.lens_is_known;
   if (options.gyro_offset_s) {
     sync.initial_offset_s = *options.gyro_offset_s;
     sync.search_s = 0.0;
@@ -111,11 +114,13 @@ Result<RsSelection> SelectGyro(const StabilizeOptions& options, CameraKnowledge 
   if (Status ok = CheckOverlap(*inputs.gyro, sync->offset_s, tracks); !ok) {
     return Propagate(std::move(ok.error()), inputs.gyro_origin);
   }
-  if (!known.focal_is_known && sync->focal_is_trusted) {
-    known.camera.fx *= sync->focal_ratio;
-    known.camera.fy *= sync->focal_ratio;
-  }
   const bool readout_given = known.camera.readout_s.has_value();
+  if (sync->focal_is_trusted && !(known.focal_is_known && known.lens_is_known)) {
+    // With the lens: action cameras are fisheyes, whatever their focal length.
+    const std::optional<double> readout = known.camera.readout_s;
+    known.camera = sync->camera;
+    known.camera.readout_s = readout;
+  }
   const double readout_s = readout_given              ? *known.camera.readout_s
                            : sync->readout_is_trusted ? sync->readout_s
                                                       : 0.0;

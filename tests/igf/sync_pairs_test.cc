@@ -30,6 +30,7 @@ TEST(SyncPairs, UndoesTheLensAndTimesTheRows) {
   EXPECT_NEAR(match.to.x(), 100.0 / 500.0, 1e-9);
   EXPECT_NEAR(match.from_row_share, 0.0, 1e-9);
   EXPECT_NEAR(match.to_row_share, 359.5 / 360.0 - 0.5, 1e-9);
+  EXPECT_NEAR(match.column_share, 0.0, 1e-9);
   EXPECT_NEAR(match.px_per_unit, 500.0, 1e-3);
   EXPECT_NEAR(pairs->at(0).median_motion_px.x(), 100.0, 1e-5);
 }

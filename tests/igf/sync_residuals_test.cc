@@ -42,10 +42,12 @@ bool GradientsMatch(const ceres::CostFunction& cost,
 
 TEST(SyncResiduals, TrackGradientMatchesFiniteDifferences) {
   const OrientationTrack track = TwoRates();
-  const ceres::AutoDiffCostFunction<SyncTrackResidual, 2, 1, 3, 1, 1, 1> cost(new SyncTrackResidual(
-      track, 1.97, 2.02, SyncMatch{{0.3, -0.2}, {0.28, -0.17}, -0.3, 0.2, 500.0}));
+  const ceres::AutoDiffCostFunction<SyncTrackResidual, 2, 1, 3, 1, 1, 1, 2> cost(
+      new SyncTrackResidual(track, 1.97, 2.02,
+                            SyncMatch{{0.3, -0.2}, {0.28, -0.17}, -0.3, 0.2, 0.1, 500.0}));
   for (const double curvature : {0.0, -0.3, 0.04}) {
-    EXPECT_TRUE(GradientsMatch(cost, {{1.002}, {0.02, -0.01, 0.03}, {0.1}, {curvature}, {0.021}}));
+    EXPECT_TRUE(GradientsMatch(
+        cost, {{1.002}, {0.02, -0.01, 0.03}, {0.1}, {curvature}, {0.021}, {0.3, -0.2}}));
   }
 }
 
@@ -72,17 +74,24 @@ TEST(SyncResiduals, ZeroAtTheTruth) {
   const Eigen::Vector2d to_straight =
       (to_from_from * Eigen::Vector3d(from_straight.x(), from_straight.y(), 1.0)).hnormalized();
   const SyncMatch match{focal * BendPlane(from_straight, curvature),
-                        focal * BendPlane(to_straight, curvature), -0.25, 0.35, 500.0};
+                        focal * BendPlane(to_straight, curvature),
+                        -0.25,
+                        0.35,
+                        0.1,
+                        500.0};
   const SyncTrackResidual residual(track, 0.70, 0.74, match);
   const double log_focal = std::log(focal);
+  const std::array<double, 2> drift{};
   std::array<double, 2> r{};
-  ASSERT_TRUE(residual(&offset_s, bias.data(), &log_focal, &curvature, &readout_s, r.data()));
+  ASSERT_TRUE(
+      residual(&offset_s, bias.data(), &log_focal, &curvature, &readout_s, drift.data(), r.data()));
   // The bias acts to first order over 40 ms.
   constexpr double kFirstOrder_px = 0.02;
   EXPECT_NEAR(r[0], 0.0, kFirstOrder_px);
   EXPECT_NEAR(r[1], 0.0, kFirstOrder_px);
   const double wrong_offset_s = -offset_s;
-  ASSERT_TRUE(residual(&wrong_offset_s, bias.data(), &log_focal, &curvature, &readout_s, r.data()));
+  ASSERT_TRUE(residual(&wrong_offset_s, bias.data(), &log_focal, &curvature, &readout_s,
+                       drift.data(), r.data()));
   EXPECT_GT(std::hypot(r[0], r[1]), 1.0);
 }
 
