@@ -115,11 +115,13 @@ Result<RsSelection> SelectGyro(const StabilizeOptions& options, CameraKnowledge 
     return Propagate(std::move(ok.error()), inputs.gyro_origin);
   }
   const bool readout_given = known.camera.readout_s.has_value();
+  // A lens found here bends the field only, which lives in recorded pixels: nobody asked for the
+  // clip to be straightened. What follows the path sees a pinhole of the same scale at its centre.
+  Camera field_camera = known.camera;
   if (sync->focal_is_trusted && !(known.focal_is_known && known.lens_is_known)) {
-    // With the lens: action cameras are fisheyes, whatever their focal length.
-    const std::optional<double> readout = known.camera.readout_s;
-    known.camera = sync->camera;
-    known.camera.readout_s = readout;
+    field_camera = sync->camera;
+    known.camera.fx = field_camera.fx;
+    known.camera.fy = field_camera.fy;
   }
   const double readout_s = readout_given              ? *known.camera.readout_s
                            : sync->readout_is_trusted ? sync->readout_s
@@ -130,7 +132,7 @@ Result<RsSelection> SelectGyro(const StabilizeOptions& options, CameraKnowledge 
   }
   known.camera.readout_s = readout_s;
   auto source =
-      igf::GyroMotionSource::Create(known.camera, readout_s, track->WithOffset(sync->offset_s));
+      igf::GyroMotionSource::Create(field_camera, readout_s, track->WithOffset(sync->offset_s));
   if (!source) {
     return Propagate(std::move(source.error()), inputs.gyro_origin);
   }
