@@ -155,6 +155,30 @@ TEST(PathSmoother, KeepsTheCropWindowInsideThePicture) {
   }
 }
 
+TEST(PathSmoother, ATightCropMakesThePathFollowInsteadOfBendingThePicture) {
+  // Strides of 45 px and jolts of 6 px: at these crop ratios most of it has to stay.
+  const auto motions = Shifting(75, [](int t) {
+    return Eigen::Vector2d(30.0 * kPx * std::sin(0.21 * t) + 6.0 * kPx * std::sin(1.3 * t),
+                           45.0 * kPx * std::sin(0.37 * t) + 6.0 * kPx * std::cos(1.7 * t));
+  });
+  constexpr double kMinAnisotropy = 0.949;  // the limit of 0.95, less rounding
+  constexpr double kZoomSlack = 0.04;       // the zoom may go 0.03 beyond what the window needs
+  for (const bool adaptive_zoom : {true, false}) {
+    for (const double crop_ratio : {1.0, 0.95}) {
+      PathSmootherOptions options = Options();
+      options.min_crop_ratio = crop_ratio;
+      options.adaptive_zoom = adaptive_zoom;
+      for (const PathUpdate& u : Smooth(options, motions)) {
+        const Eigen::Matrix3d& update = u.rectified_from_output;
+        EXPECT_GT(AffineAnisotropy(update), kMinAnisotropy) << crop_ratio;
+        const double zoom = std::sqrt(update.topLeftCorner<2, 2>().determinant()) / update(2, 2);
+        EXPECT_GT(zoom, crop_ratio - kZoomSlack) << crop_ratio;
+        EXPECT_LT(zoom, 1.0 + kZoomSlack) << crop_ratio;
+      }
+    }
+  }
+}
+
 TEST(PathSmoother, ZoomsInWhereBordersWouldShowAndOnlyThere) {
   // Still for 10 s but for a shaky second in the middle.
   const auto motions = Shifting(300, [](int t) {
