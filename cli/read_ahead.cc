@@ -1,12 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/read_ahead.h"
 
+#include <exception>
+#include <new>
 #include <utility>
 
 namespace rsstab::cli {
 namespace {
 
 constexpr std::size_t kFramesAhead = 3;  // at 4K each one takes 12 to 25 MB
+
+// An exception must not end the thread: without an item it would look like the end of the clip.
+Result<std::optional<media::VideoFrame>> ReadSafely(media::VideoReader& reader) {
+  try {
+    return reader.Read();
+  } catch (const std::bad_alloc&) {
+    return Fail(ErrorCode::kIo, "out of memory while decoding");
+  } catch (const std::exception& exception) {
+    return Fail(ErrorCode::kInternal, "decoding failed: {}", exception.what());
+  }
+}
 
 }  // namespace
 
@@ -25,7 +38,7 @@ Result<std::optional<media::VideoFrame>> ReadAhead::Next() {
 
 void ReadAhead::Run() {
   while (true) {
-    Item item = reader_->Read();
+    Item item = ReadSafely(*reader_);
     const bool last = !item || !*item;
     if (!queue_.Push(std::move(item)) || last) {
       break;

@@ -1,12 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/write_behind.h"
 
+#include <exception>
+#include <new>
 #include <utility>
 
 namespace rsstab::cli {
 namespace {
 
 constexpr std::size_t kFramesWaiting = 3;  // at 4K each one takes 12 to 25 MB
+
+// An exception must not leave the thread.
+Status WriteSafely(media::VideoWriter& writer, const Frame& frame) {
+  try {
+    return writer.Write(frame);
+  } catch (const std::bad_alloc&) {
+    return Fail(ErrorCode::kIo, "out of memory while encoding");
+  } catch (const std::exception& exception) {
+    return Fail(ErrorCode::kInternal, "encoding failed: {}", exception.what());
+  }
+}
 
 }  // namespace
 
@@ -56,7 +69,7 @@ void WriteBehind::Run() {
         return;
       }
     }
-    if (Status status = writer_->Write(*frame); !status) {
+    if (Status status = WriteSafely(*writer_, *frame); !status) {
       {
         const std::lock_guard lock(mutex_);
         status_ = std::move(status);

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stabilizer/pipeline/track_spool.h"
 
+#include <stdlib.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
+#include <string>
+#include <system_error>
 #include <vector>
 
 namespace rsstab::pipeline {
@@ -41,11 +47,24 @@ TrackSpool::TrackSpool(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 TrackSpool::~TrackSpool() = default;
 
 Result<std::unique_ptr<TrackSpool>> TrackSpool::Create() {
+  // Not std::tmpfile(): it does not look at TMPDIR.
+  std::error_code error;
+  std::string path = std::filesystem::temp_directory_path(error) / "rs-stabilize-tracks-XXXXXX";
+  if (error) {
+    return Fail(ErrorCode::kIo, "there is no folder for temporary files ({}); set TMPDIR to one",
+                error.message());
+  }
   auto impl = std::make_unique<Impl>();
-  impl->file.reset(std::tmpfile());
+  const int descriptor = mkstemp(path.data());
+  if (descriptor >= 0) {
+    unlink(path.c_str());  // lives on, without a name, until it is closed
+    impl->file.reset(fdopen(descriptor, "w+b"));
+    if (!impl->file) {
+      close(descriptor);
+    }
+  }
   if (!impl->file) {
-    return Fail(ErrorCode::kIo,
-                "cannot create a temporary file: {}; make room in /tmp or set TMPDIR",
+    return Fail(ErrorCode::kIo, "cannot create the temporary file {}: {}; set TMPDIR", path,
                 std::strerror(errno));
   }
   return std::unique_ptr<TrackSpool>(new TrackSpool(std::move(impl)));

@@ -15,7 +15,7 @@ namespace rsstab::pipeline {
 // frame instead. Write all, then read in order, as often as needed.
 class TrackSpool {
  public:
-  // Errors: kIo when the folder for temporary files (TMPDIR) cannot be written.
+  // Errors: kIo when the folder for temporary files ($TMPDIR or /tmp) cannot be written.
   [[nodiscard]] static Result<std::unique_ptr<TrackSpool>> Create();
   ~TrackSpool();
   TrackSpool(const TrackSpool&) = delete;
