@@ -480,11 +480,14 @@ class LocalTemporalCost final : public ceres::SizedCostFunction<4, 2, 2, 2, 2> {
 };
 
 Status CeresPathSmoother::SolveLocal() {
-  // Without local motion in the window (a gyro clip without parallax, no texture) nothing to do.
+  // Without local motion in the window (a gyro clip without parallax, no texture) nothing to do,
+  // once the smooth path has come to rest, too.
   double motion = 0.0;
   for (const Node& node : nodes_) {
     for (std::size_t k = 0; k < modes_.count(); ++k) {
-      motion = std::max(motion, (node.local_path[k] - nodes_.front().local_path[k]).norm());
+      const Eigen::Vector2d& rest = nodes_.front().local_path[k];
+      motion = std::max(
+          {motion, (node.local_path[k] - rest).norm(), (node.local_smooth[k] - rest).norm()});
     }
   }
   if (motion == 0.0) {

@@ -279,6 +279,30 @@ TEST(PathSmoother, SmoothsLocalMotionToo) {
             0.5);
 }
 
+TEST(PathSmoother, LocalMotionThatEndsLeavesNoStep) {
+  // The picture bends steadily until frame 87, then freezes: what the smooth path is behind by has
+  // to fade, also where a window holds no local motion at all.
+  PathSmootherOptions options = Options();
+  const auto num_vertices =
+      static_cast<std::size_t>((options.mesh_columns + 1) * (options.mesh_rows + 1));
+  std::vector<FrameMotion> motions(250);
+  motions[0].path_begins = true;
+  for (std::size_t t = 1; t <= 87; ++t) {
+    motions[t].local.assign(num_vertices, Eigen::Vector2d(0.4 * kPx, 0.0));
+  }
+  const auto updates = Smooth(options, motions);
+  const auto bend = [&](std::size_t t) {
+    return updates[t].mesh_update.empty() ? 0.0 : updates[t].mesh_update.front().x();
+  };
+  double largest = 0.0;
+  for (std::size_t t = 1; t < updates.size(); ++t) {
+    largest = std::max(largest, std::abs(bend(t)));
+    // The recorded motion is 0.4 px a frame, and what fades after it at most a quarter of that.
+    EXPECT_LT(std::abs(bend(t) - bend(t - 1)), (t <= 105 ? 0.4 : 0.1) * kPx) << t;
+  }
+  EXPECT_GT(largest, 0.5 * kPx);
+}
+
 TEST(PathSmoother, OneFrameAndNoneAreFine) {
   auto smoother = MakeCeresPathSmoother(Options());
   ASSERT_TRUE(smoother);
