@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "igf/sync_covariance.h"
 
+#include <ceres/crs_matrix.h>
+
 #include <Eigen/LU>
 #include <vector>
 

@@ -2,12 +2,14 @@
 #ifndef RSSTAB_IGF_SYNC_COVARIANCE_H_
 #define RSSTAB_IGF_SYNC_COVARIANCE_H_
 
-#include <ceres/crs_matrix.h>
-
 #include <Eigen/Core>
 #include <cstddef>
 #include <optional>
 #include <span>
+
+namespace ceres {
+struct CRSMatrix;
+}
 
 namespace rsstab::igf {
 

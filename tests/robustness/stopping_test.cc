@@ -13,7 +13,7 @@ class Stopping : public Damage {
     TestClip clip;
     clip.width = 320;
     clip.height = 240;
-    clip.frames = 600;
+    clip.frames = 240;
     WriteTestClip(Path("long.mkv"), clip);
   }
 };
