@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "igf/sync_covariance.h"
 
+#include <ceres/crs_matrix.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
