@@ -12,6 +12,9 @@ if(RSSTAB_SANITIZE)
   target_compile_options(rsstab_build_flags INTERFACE
     -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   target_link_options(rsstab_build_flags INTERFACE -fsanitize=address,undefined)
+  # Under ASan Eigen puts its own header before each block, and so cannot free what an uninstrumented
+  # libceres allocated (nor the other way round). malloc is aligned well enough.
+  target_compile_definitions(rsstab_build_flags INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 
 # rsstab_module(NAME SOURCES ... PUBLIC ... PRIVATE ...)

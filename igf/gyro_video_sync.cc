@@ -34,6 +34,8 @@ constexpr std::size_t kSearchPairs = 120;
 constexpr std::size_t kCandidatePairs = 60;
 constexpr std::size_t kCandidateMatches = 12;
 constexpr int kCandidateIterations = 12;
+// Peaks that explain less than this share of the highest are not worth a fit.
+constexpr double kMinPeakRatio = 0.5;
 constexpr std::size_t kFinalPairs = 120;
 constexpr std::size_t kFinalMatches = 40;
 constexpr double kFitRadius_s = 10e-3;  // half-width around a peak, and around the best fit
@@ -182,6 +184,9 @@ std::optional<Candidates> RefineCandidates(const std::vector<SyncPair>& pairs,
   options.max_iterations = kCandidateIterations;
   std::vector<SyncFit> fits;
   for (const OffsetCandidate& peak : peaks) {
+    if (peak.explained < kMinPeakRatio * peaks.front().explained) {
+      break;  // sorted: the rest is weaker still
+    }
     const SyncState start{peak.offset_s, Eigen::Vector3d::Zero(), 0.0, 0.0, peak.readout_s};
     if (auto fit = FitSync(sample, track, start, options); fit && !fit->offset_at_bound) {
       fits.push_back(*fit);

@@ -47,7 +47,7 @@ constexpr double kLossScaleSigmas = 2.5;
 constexpr double kSigmaPerMedian = 1.4826 / 1.414;  // median length of a 2-D error -> per axis
 // Drifts: one for every cell of the picture and window of time. Worth so many matches' doubt, and
 // free to grow once they exceed the loss scale: far scenery has none, near ground has a lot.
-constexpr int kDriftCells = 4;
+constexpr double kDriftCells = 4.0;
 constexpr double kDriftWindow_s = 1.0;
 constexpr double kDriftPriorMatches = 12.0;
 constexpr double kDriftLossScale_px = 0.2;
@@ -93,7 +93,7 @@ class SyncProblem {
   SyncProblem(std::span<const SyncPair> pairs, const OrientationTrack& track,
               const SyncState& start, const SyncFitOptions& options)
       : options_(options), start_(start), parameters_(Pack(start)) {
-    std::map<std::array<int, 3>, std::size_t> drift_of_cell;
+    std::map<std::array<double, 3>, std::size_t> drift_of_cell;
     const double margin =
         options.offset_radius_s +
         0.5 * (options.fit_readout ? options.frame_interval_s : std::abs(start.readout_s));
@@ -106,10 +106,10 @@ class SyncProblem {
       for (std::size_t i = 0; i < pair.matches.size(); i += stride) {
         const SyncMatch& match = pair.matches[i];
         residuals_.emplace_back(track, pair.from_time_s, pair.to_time_s, match);
-        const std::array<int, 3> cell = {
-            static_cast<int>(std::floor(pair.from_time_s / kDriftWindow_s)),
-            static_cast<int>(std::floor((match.from_row_share + 0.5) * kDriftCells)),
-            static_cast<int>(std::floor((match.column_share + 0.5) * kDriftCells))};
+        // Whole numbers, kept as double: a damaged timestamp may be any size.
+        const std::array<double, 3> cell = {std::floor(pair.from_time_s / kDriftWindow_s),
+                                            std::floor((match.from_row_share + 0.5) * kDriftCells),
+                                            std::floor((match.column_share + 0.5) * kDriftCells)};
         drift_of_match_.push_back(
             drift_of_cell.try_emplace(cell, drift_of_cell.size()).first->second);
         motion_sq_.push_back(
