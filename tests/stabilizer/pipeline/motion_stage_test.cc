@@ -3,10 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <functional>
 #include <random>
 
 #include "igf/base/homography.h"
+#include "igf/base/rotation.h"
+#include "stabilizer/normalized_coordinates.h"
 
 namespace rsstab::pipeline {
 namespace {
@@ -114,6 +118,96 @@ TEST(MotionStage, AFrameTheSourceCannotTellIsLeftAsItIs) {
   const auto frames = AnalyzeSkewed(selection);
   EXPECT_EQ(frames[30].rs_field.columns(), 0);
   EXPECT_EQ(frames[31].rs_field.rows(), 33);
+}
+
+std::vector<stabilizer::FrameAnalysis> Analyze(
+    RsSelection& selection, const std::function<PointTracks(int)>& tracks_of_frame) {
+  auto stage = MotionStage::Create({}, {kWidth, kHeight, 30.0}, &selection, SilentLogger());
+  EXPECT_TRUE(stage);
+  for (int n = 0; n < kFrames; ++n) {
+    FrameObservation o;
+    o.pts = n;
+    o.time_s = n / 30.0;
+    o.tracks = tracks_of_frame(n);
+    o.tracks.width = kWidth;
+    o.tracks.height = kHeight;
+    o.attempted_points = static_cast<int>(o.tracks.matches.size());
+    EXPECT_TRUE((*stage)->Push(o));
+  }
+  EXPECT_TRUE((*stage)->Finish());
+  auto frames = (*stage)->TakeReady();
+  EXPECT_EQ(frames.size(), static_cast<std::size_t>(kFrames));
+  return frames;
+}
+
+// A camera that nods and shakes its head, known without any picture.
+double ShakeRad(double time_s) { return 0.01 * std::sin(2.4 * 30.0 * time_s); }
+
+class ShakingHead final : public RsMotionSource {
+ public:
+  std::string Name() const override { return "gyro"; }
+  bool NeedsImage() const override { return false; }
+  Result<RsMotion> EstimateMotion(const FrameContext&) override { return RsMotion(); }
+  std::optional<Eigen::Quaterniond> CameraFromWorld(double time_s) const override {
+    const double angle = ShakeRad(time_s);
+    return ExpSo3(Eigen::Vector3d(0.5 * angle, angle, 0.0)).inverse();
+  }
+};
+
+// In a dark clip the log alone has to steady the picture; taken the wrong way round it would double
+// the shake.
+TEST(MotionStage, FollowsTheSensorWhereThereAreNoTracks) {
+  RsSelection selection;
+  selection.source = std::make_unique<ShakingHead>();
+  selection.camera = Camera::Pinhole(kWidth, kHeight, 500.0);
+  const auto frames = Analyze(selection, [](int) { return PointTracks(); });
+  const ShakingHead head;
+  double largest_in = 0.0;
+  double largest_out = 0.0;
+  for (std::size_t n = 20; n < 40; ++n) {  // away from the ends
+    const auto shown = [&](std::size_t frame) -> std::array<Eigen::Vector2d, 2> {
+      const Eigen::Vector3d ahead =
+          *head.CameraFromWorld(static_cast<double>(frame) / 30.0) * Eigen::Vector3d::UnitZ();
+      const Eigen::Vector2d recorded =
+          stabilizer::ToNormalized((selection.camera->K() * ahead).hnormalized(), kWidth, kHeight);
+      return {recorded, Project(frames[frame].rectified_from_output.inverse(), recorded)};
+    };
+    largest_in = std::max(largest_in, (shown(n)[0] - shown(n - 1)[0]).norm());
+    largest_out = std::max(largest_out, (shown(n)[1] - shown(n - 1)[1]).norm());
+  }
+  EXPECT_GT(largest_in * kWidth, 8.0);
+  EXPECT_LT(largest_out * kWidth, 0.5);
+}
+
+// The right part of the picture jumps to the right by 2 px in odd frames and back in even ones; the
+// mesh has to look for it there.
+TEST(MotionStage, LocalUpdatesLookWhereTheContentWent) {
+  RsSelection selection;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> x(10.0F, kWidth - 10.0F);
+  std::uniform_real_distribution<float> y(10.0F, kHeight - 10.0F);
+  const auto jump = [](int frame, float px) {
+    return px > 0.7F * kWidth && frame % 2 != 0 ? 2.0F : 0.0F;
+  };
+  const auto frames = Analyze(selection, [&](int n) {
+    PointTracks tracks;
+    for (int k = 0; n > 0 && k < 400; ++k) {
+      const Eigen::Vector2f p(x(random), y(random));
+      tracks.matches.push_back({p + Eigen::Vector2f(jump(n - 1, p.x()), 0.0F),
+                                p + Eigen::Vector2f(jump(n, p.x()), 0.0F)});
+    }
+    return tracks;
+  });
+  const Eigen::Vector2d right(0.9 * kWidth, 0.5 * kHeight);
+  const auto looks_at = [&](std::size_t n) {
+    const Eigen::Vector2d rectified = stabilizer::ToPixels(
+        Project(frames[n].rectified_from_output, stabilizer::ToNormalized(right, kWidth, kHeight)),
+        kWidth, kHeight);
+    return rectified.x() + frames[n].mesh_update.Sample(rectified).x();
+  };
+  // The grid is coarse and the cells are stiff: most of the 2 px, not all.
+  EXPECT_NEAR(looks_at(31) - looks_at(30), 2.0, 0.8);
+  EXPECT_NEAR(looks_at(32) - looks_at(31), -2.0, 0.8);
 }
 
 TEST(MotionStage, RefusesImpossibleClips) {
