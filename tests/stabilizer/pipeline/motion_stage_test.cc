@@ -179,37 +179,6 @@ TEST(MotionStage, FollowsTheSensorWhereThereAreNoTracks) {
   EXPECT_LT(largest_out * kWidth, 0.5);
 }
 
-// The right part of the picture jumps to the right by 2 px in odd frames and back in even ones; the
-// mesh has to look for it there.
-TEST(MotionStage, LocalUpdatesLookWhereTheContentWent) {
-  RsSelection selection;
-  std::mt19937 random(7);
-  std::uniform_real_distribution<float> x(10.0F, kWidth - 10.0F);
-  std::uniform_real_distribution<float> y(10.0F, kHeight - 10.0F);
-  const auto jump = [](int frame, float px) {
-    return px > 0.7F * kWidth && frame % 2 != 0 ? 2.0F : 0.0F;
-  };
-  const auto frames = Analyze(selection, [&](int n) {
-    PointTracks tracks;
-    for (int k = 0; n > 0 && k < 400; ++k) {
-      const Eigen::Vector2f p(x(random), y(random));
-      tracks.matches.push_back({p + Eigen::Vector2f(jump(n - 1, p.x()), 0.0F),
-                                p + Eigen::Vector2f(jump(n, p.x()), 0.0F)});
-    }
-    return tracks;
-  });
-  const Eigen::Vector2d right(0.9 * kWidth, 0.5 * kHeight);
-  const auto looks_at = [&](std::size_t n) {
-    const Eigen::Vector2d rectified = stabilizer::ToPixels(
-        Project(frames[n].rectified_from_output, stabilizer::ToNormalized(right, kWidth, kHeight)),
-        kWidth, kHeight);
-    return rectified.x() + frames[n].mesh_update.Sample(rectified).x();
-  };
-  // The grid is coarse and the cells are stiff: most of the 2 px, not all.
-  EXPECT_NEAR(looks_at(31) - looks_at(30), 2.0, 0.8);
-  EXPECT_NEAR(looks_at(32) - looks_at(31), -2.0, 0.8);
-}
-
 TEST(MotionStage, RefusesImpossibleClips) {
   RsSelection selection;
   EXPECT_FALSE(MotionStage::Create({}, {0, 360, 30.0}, &selection, SilentLogger()));
