@@ -47,25 +47,29 @@ Result<std::unique_ptr<media::VideoReader>> OpenClip(const std::string& input,
   return media::VideoReader::Open(input, {options.num_threads, logger});
 }
 
-Result<std::unique_ptr<media::VideoWriter>> OpenOutput(const EncodeOptions& encode,
-                                                       const pipeline::StabilizeOptions& options,
-                                                       media::VideoReader& clip,
-                                                       const Logger& logger) {
-  const media::WriterOptions writer = ToWriterOptions(encode, options, logger);
-  const std::string& input = clip.info().path;
-  const std::string output = encode.output.empty() ? DefaultOutput(input) : encode.output;
-  if (Status status = CheckOutput(input, output, encode.overwrite); !status) {
-    return Propagate(status.error());
+Result<SteadyClip> OpenOutput(const EncodeOptions& encode,
+                              const pipeline::StabilizeOptions& options, media::VideoReader& clip,
+                              const Logger& logger) {
+  const std::string input = clip.info().path;
+  const auto open = [&](const std::string& output) -> Result<SteadyClip> {
+    if (Status status = CheckOutput(input, output, encode.overwrite); !status) {
+      return Propagate(status.error());
+    }
+    auto writer = media::VideoWriter::Open(output, clip, ToWriterOptions(encode, options, logger));
+    if (!writer) {
+      return Propagate(writer.error());
+    }
+    return SteadyClip{output, std::move(*writer)};
+  };
+  if (!encode.output.empty()) {
+    return open(encode.output);
   }
-  auto opened = media::VideoWriter::Open(output, clip, writer);
-  if (opened || !encode.output.empty() || opened.error().code != ErrorCode::kUnsupported) {
-    return opened;
+  const std::string output = DefaultOutput(input);
+  auto opened = open(output);
+  if (!opened && opened.error().code == ErrorCode::kUnsupported) {
+    return open(std::filesystem::path(output).replace_extension(".mkv").string());
   }
-  const std::string matroska = std::filesystem::path(output).replace_extension(".mkv").string();
-  if (Status status = CheckOutput(input, matroska, encode.overwrite); !status) {
-    return Propagate(status.error());
-  }
-  return media::VideoWriter::Open(matroska, clip, writer);
+  return opened;
 }
 
 Result<stabilizer::ClipAnalysis> AnalyzeClip(std::unique_ptr<media::VideoReader> clip,
@@ -115,8 +119,7 @@ Result<stabilizer::ClipAnalysis> AnalyzeClip(std::unique_ptr<media::VideoReader>
   return analysis;
 }
 
-Status RenderClip(std::unique_ptr<media::VideoReader> clip,
-                  std::unique_ptr<media::VideoWriter> output,
+Status RenderClip(std::unique_ptr<media::VideoReader> clip, SteadyClip output,
                   const pipeline::StabilizeOptions& options, const std::string& analysis_file,
                   PassNumber number, const CommandContext& context) {
   const media::VideoInfo info = clip->info();
@@ -128,7 +131,7 @@ Status RenderClip(std::unique_ptr<media::VideoReader> clip,
 
   context.reporter->BeginPass(number.pass, number.passes, "render", (*renderer)->clip().num_frames);
   ReadAhead frames(std::move(clip));
-  WriteBehind steady_clip(std::move(output));
+  WriteBehind steady_clip(std::move(output.writer));
   while (true) {
     auto frame = frames.Next();
     if (CancelRequested()) {
@@ -156,6 +159,9 @@ Status RenderClip(std::unique_ptr<media::VideoReader> clip,
     return status;
   }
   context.reporter->EndPass();
+  const stabilizer::ClipAnalysis& analysis = (*renderer)->clip();
+  context.logger->info("{}: {} frames, at least {:.1f} % of each side kept", output.path,
+                       analysis.num_frames, 100.0 * analysis.smallest_kept_ratio);
   return {};
 }
 

@@ -26,11 +26,16 @@ struct PassNumber {
 [[nodiscard]] Result<std::unique_ptr<media::VideoReader>> OpenClip(
     const std::string& input, const pipeline::StabilizeOptions& options, const Logger& logger);
 
+struct SteadyClip {
+  std::string path;
+  std::unique_ptr<media::VideoWriter> writer;
+};
+
 // Opens the output for frames that stem from `clip`: the named file, or the default one beside the
 // clip (in Matroska, should its own container not carry the encoding).
-[[nodiscard]] Result<std::unique_ptr<media::VideoWriter>> OpenOutput(
-    const EncodeOptions& encode, const pipeline::StabilizeOptions& options,
-    media::VideoReader& clip, const Logger& logger);
+[[nodiscard]] Result<SteadyClip> OpenOutput(const EncodeOptions& encode,
+                                            const pipeline::StabilizeOptions& options,
+                                            media::VideoReader& clip, const Logger& logger);
 
 // Pass 1: looks at the whole clip and writes `analysis_file`. Errors: kCancelled when the user
 // asked to stop; otherwise those of reader, gyro and analysis. Nothing is left after an error.
@@ -38,9 +43,8 @@ struct PassNumber {
     std::unique_ptr<media::VideoReader> clip, const pipeline::StabilizeOptions& options,
     const std::string& analysis_file, PassNumber number, const CommandContext& context);
 
-// Pass 2: writes the steady clip. Errors as above.
-[[nodiscard]] Status RenderClip(std::unique_ptr<media::VideoReader> clip,
-                                std::unique_ptr<media::VideoWriter> output,
+// Pass 2: writes the steady clip, and logs what became of it. Errors as above.
+[[nodiscard]] Status RenderClip(std::unique_ptr<media::VideoReader> clip, SteadyClip output,
                                 const pipeline::StabilizeOptions& options,
                                 const std::string& analysis_file, PassNumber number,
                                 const CommandContext& context);

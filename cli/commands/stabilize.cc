@@ -35,14 +35,8 @@ Status RunStabilize(const Invocation& invocation, const CommandContext& context)
   if (!analysis) {
     return Propagate(analysis.error());
   }
-  if (Status status = RenderClip(std::move(*second_look), std::move(*output), options,
-                                 analysis_file, {2, 2}, context);
-      !status) {
-    return status;
-  }
-  context.logger->info("{} frames done; at least {:.1f} % of each side was kept",
-                       analysis->num_frames, 100.0 * analysis->smallest_kept_ratio);
-  return {};
+  return RenderClip(std::move(*second_look), std::move(*output), options, analysis_file, {2, 2},
+                    context);
 }
 
 }  // namespace rsstab::cli
