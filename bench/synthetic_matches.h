@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "igf/base/homography.h"
-#include "igf/seeded_random.h"
+#include "igf/base/seeded_random.h"
 #include "stabilizer/global_motion.h"
 #include "stabilizer/normalized_coordinates.h"
 
@@ -28,7 +28,7 @@ inline constexpr int kMatchesPerFrame = 500;
 // Matches of that motion with parallax of 1.5 px, 0.1 px of noise and a fifth of wrong ones.
 [[nodiscard]] inline std::vector<stabilizer::RectifiedMatch> SyntheticMatches() {
   constexpr double kPx = 1.0 / stabilizer::kReferenceWidthPx;
-  igf::SeededRandom random(1);
+  SeededRandom random(1);
   std::vector<stabilizer::RectifiedMatch> matches;
   for (int i = 0; i < kMatchesPerFrame; ++i) {
     stabilizer::RectifiedMatch m;

@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "igf/base/json_fields_detail.h"
+#include "igf/base/whole_file.h"
 #include "igf/gyro_text_rows.h"
-#include "igf/json_fields_detail.h"
-#include "igf/whole_file.h"
 
 namespace rsstab::igf {
 namespace {

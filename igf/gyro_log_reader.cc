@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include "igf/base/whole_file.h"
 #include "igf/csv_parser.h"
 #include "igf/gcsv_parser.h"
 #include "igf/gpmf_parser.h"
 #include "igf/gpmf_streams.h"
 #include "igf/gyroflow_json_parser.h"
-#include "igf/whole_file.h"
 
 namespace rsstab::igf {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "igf/json_fields_detail.h"
+#include "igf/base/json_fields_detail.h"
 
 namespace rsstab::igf {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "igf/base/rotation.h"
-#include "igf/seeded_random.h"
+#include "igf/base/seeded_random.h"
 
 namespace rsstab::igf {
 namespace {

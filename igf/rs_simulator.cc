@@ -9,7 +9,7 @@
 
 #include "igf/base/rolling_shutter.h"
 #include "igf/base/rotation.h"
-#include "igf/seeded_random.h"
+#include "igf/base/seeded_random.h"
 
 namespace rsstab::igf {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "igf/seeded_random.h"
+#include "igf/base/seeded_random.h"
 #include "igf/street/street_canvas.h"
 #include "igf/street/street_houses.h"
 

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <utility>
 
+#include "igf/base/whole_file.h"
 #include "igf/camera_profile_reader.h"
-#include "igf/whole_file.h"
 
 namespace rsstab::igf {
 namespace {

@@ -18,14 +18,14 @@
 
 #include "cli/media/video_writer.h"
 #include "igf/base/parallel_for.h"
+#include "igf/base/seeded_random.h"
+#include "igf/base/whole_file.h"
 #include "igf/camera_profile_reader.h"
 #include "igf/csv_parser.h"
 #include "igf/gyro_integrator.h"
 #include "igf/gyro_log_reader.h"
 #include "igf/gyro_simulator.h"
 #include "igf/scene_painter.h"
-#include "igf/seeded_random.h"
-#include "igf/whole_file.h"
 
 namespace rsstab::cli {
 namespace {
@@ -41,7 +41,7 @@ constexpr int kBlurSamples = 16;
 // A picture file as packed RGB.
 Result<igf::RgbPicture> LoadPicture(const std::string& path) {
   constexpr std::uint64_t kMaxBytes = 1ULL << 30U;
-  const Result<std::string> bytes = igf::ReadWholeFile(path, kMaxBytes);
+  const Result<std::string> bytes = ReadWholeFile(path, kMaxBytes);
   if (!bytes) {
     return Propagate(bytes.error());
   }
@@ -158,7 +158,7 @@ igf::GyroSimulatorOptions GyroOptionsFrom(const SimulateOptions& options) {
   gyro.noise_seed = static_cast<std::uint64_t>(options.seed);
   if (options.gyro_bias_rad_s > 0.0) {
     constexpr std::uint64_t kBiasStream = 99;
-    igf::SeededRandom random(gyro.noise_seed, kBiasStream);
+    SeededRandom random(gyro.noise_seed, kBiasStream);
     const Eigen::Vector3d direction(random.Normal(), random.Normal(), random.Normal());
     gyro.bias_rad_s = options.gyro_bias_rad_s * direction.normalized();
   }
@@ -354,7 +354,7 @@ Status RunSimulate(const SimulateOptions& options, const Logger& logger,
        {"camera.json", igf::FormatCameraJson(simulation->truth.camera)},
        {"truth.json", *truth}}};
   for (const auto& [name, text] : texts) {
-    if (Status status = igf::WriteWholeFile(path_of(name), text); !status) {
+    if (Status status = WriteWholeFile(path_of(name), text); !status) {
       return status;
     }
   }

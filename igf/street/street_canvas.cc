@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "igf/seeded_random.h"
+#include "igf/base/seeded_random.h"
 
 namespace rsstab::igf {
 namespace {

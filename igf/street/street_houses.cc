@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "igf/seeded_random.h"
+#include "igf/base/seeded_random.h"
 
 namespace rsstab::igf {
 namespace {

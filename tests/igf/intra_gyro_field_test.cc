@@ -125,7 +125,7 @@ TEST(IntraGyroField, WorksOnTheSmallestImage) {
 TEST(ReadoutMotion, MapsAreInverse) {
   for (const Camera& camera : {Camera::Pinhole(1920, 1080, 1500.0), Hero7()}) {
     const ReadoutMotion motion =
-        *ReadoutMotion::Create(camera, Shaking(), kFrameTime, 0.025, (camera.height - 1) / 2.0);
+        *ComputeReadoutMotion(camera, Shaking(), kFrameTime, 0.025, (camera.height - 1) / 2.0);
     for (double y = 40.0; y < camera.height - 40.0; y += 61.0) {
       for (double x = 40.0; x < camera.width - 40.0; x += 97.0) {
         const auto rs = motion.RsFromGs({x, y});
@@ -140,7 +140,7 @@ TEST(ReadoutMotion, MapsAreInverse) {
 
 TEST(ReadoutMotion, ReferenceRowStaysInPlace) {
   const Camera camera = Camera::Pinhole(640, 360, 500.0);
-  const ReadoutMotion motion = *ReadoutMotion::Create(camera, Shaking(), kFrameTime, 0.025, 0.0);
+  const ReadoutMotion motion = *ComputeReadoutMotion(camera, Shaking(), kFrameTime, 0.025, 0.0);
   EXPECT_LT((*motion.GsFromRs({100.0, 0.0}) - Eigen::Vector2d(100.0, 0.0)).norm(), 1e-9);
   EXPECT_GT((*motion.GsFromRs({100.0, 359.0}) - Eigen::Vector2d(100.0, 359.0)).norm(), 1.0);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#ifndef RSSTAB_IGF_JSON_FIELDS_DETAIL_H_
-#define RSSTAB_IGF_JSON_FIELDS_DETAIL_H_
+#ifndef RSSTAB_IGF_BASE_JSON_FIELDS_DETAIL_H_
+#define RSSTAB_IGF_BASE_JSON_FIELDS_DETAIL_H_
 
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -10,9 +10,9 @@
 
 #include "igf/base/result.h"
 
-// Reading JSON without exceptions; for the .cc files of this module. A key whose value is null
+// Reading JSON without exceptions; for .cc files only. A key whose value is null
 // counts as absent. Every error is kCorruptData and names the key.
-namespace rsstab::igf {
+namespace rsstab {
 
 [[nodiscard]] Result<nlohmann::json> ParseJsonObject(std::string_view text);
 
@@ -33,6 +33,6 @@ namespace rsstab::igf {
 // Text; empty when absent.
 [[nodiscard]] Result<std::string> TextField(const nlohmann::json& object, const char* key);
 
-}  // namespace rsstab::igf
+}  // namespace rsstab
 
-#endif  // RSSTAB_IGF_JSON_FIELDS_DETAIL_H_
+#endif  // RSSTAB_IGF_BASE_JSON_FIELDS_DETAIL_H_

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#ifndef RSSTAB_IGF_SEEDED_RANDOM_H_
-#define RSSTAB_IGF_SEEDED_RANDOM_H_
+#ifndef RSSTAB_IGF_BASE_SEEDED_RANDOM_H_
+#define RSSTAB_IGF_BASE_SEEDED_RANDOM_H_
 
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 
-namespace rsstab::igf {
+namespace rsstab {
 
 // Mixes 64 bits so that neighbouring inputs give unrelated outputs (the finaliser of SplitMix64,
 // Steele et al. 2014). Counter-based: per-pixel numbers do not depend on the order of the pixels.
@@ -44,6 +44,6 @@ class SeededRandom {
   std::uint64_t state_;
 };
 
-}  // namespace rsstab::igf
+}  // namespace rsstab
 
-#endif  // RSSTAB_IGF_SEEDED_RANDOM_H_
+#endif  // RSSTAB_IGF_BASE_SEEDED_RANDOM_H_

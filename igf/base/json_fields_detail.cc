@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "igf/json_fields_detail.h"
+#include "igf/base/json_fields_detail.h"
 
 #include <cmath>
 #include <cstddef>
 #include <nlohmann/json.hpp>
 
-namespace rsstab::igf {
+namespace rsstab {
 namespace {
 
 constexpr int kMaxSize = 65535;    // as AllocateFrame
@@ -85,4 +85,4 @@ Result<json> ParseJsonObject(std::string_view text) {
   return root;
 }
 
-}  // namespace rsstab::igf
+}  // namespace rsstab

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "igf/whole_file.h"
+#include "igf/base/whole_file.h"
 
 #include <filesystem>
 #include <fstream>
 #include <system_error>
 
-namespace rsstab::igf {
+namespace rsstab {
 
 namespace fs = std::filesystem;
 
@@ -56,4 +56,4 @@ Status WriteWholeFile(const std::string& path, const std::string& content) {
   return {};
 }
 
-}  // namespace rsstab::igf
+}  // namespace rsstab

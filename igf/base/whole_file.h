@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#ifndef RSSTAB_IGF_WHOLE_FILE_H_
-#define RSSTAB_IGF_WHOLE_FILE_H_
+#ifndef RSSTAB_IGF_BASE_WHOLE_FILE_H_
+#define RSSTAB_IGF_BASE_WHOLE_FILE_H_
 
 #include <cstdint>
 #include <string>
 
 #include "igf/base/result.h"
 
-namespace rsstab::igf {
+namespace rsstab {
 
 // All bytes of a regular file of at most `max_bytes`. Every error names the file.
 // Errors: kNotFound, kIo (not readable, not a regular file), kUnsupported (too large),
@@ -19,6 +19,6 @@ namespace rsstab::igf {
 // Errors: kIo.
 [[nodiscard]] Status WriteWholeFile(const std::string& path, const std::string& content);
 
-}  // namespace rsstab::igf
+}  // namespace rsstab
 
-#endif  // RSSTAB_IGF_WHOLE_FILE_H_
+#endif  // RSSTAB_IGF_BASE_WHOLE_FILE_H_
