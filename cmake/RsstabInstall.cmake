@@ -2,7 +2,7 @@
 # The library with its CMake package `rsstab`, the program, its manual and shell completion.
 
 # Media I/O is the program's own business: a host of the library brings its frames.
-set(rsstab_installed_modules rsstab_base rsstab_igf rsstab_stabilizer rsstab_pipeline)
+set(rsstab_installed_modules rsstab_base rsstab_igf rsstab_rsdiff rsstab_stabilizer rsstab_pipeline)
 set(rsstab_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/rsstab)
 install(TARGETS ${rsstab_installed_modules} EXPORT rsstabTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
@@ -15,7 +15,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/rsstabConfigVersion.cmake
 install(FILES ${PROJECT_BINARY_DIR}/rsstabConfig.cmake ${PROJECT_BINARY_DIR}/rsstabConfigVersion.cmake
   DESTINATION ${rsstab_package_dir} COMPONENT development)
 # Headers that need Ceres or carry an implementation stay inside.
-install(DIRECTORY igf stabilizer DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rsstab
+install(DIRECTORY igf rsdiff stabilizer DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rsstab
   COMPONENT development FILES_MATCHING PATTERN "*.h"
   PATTERN "street" EXCLUDE PATTERN "*_residuals.h" EXCLUDE PATTERN "*_detail.h" EXCLUDE)
 

@@ -38,16 +38,16 @@ struct WeightFile {
 // What a model file says of a network. The file is JSON:
 //   {"format": "rs-stabilize model", "version": 1, "name": "compact",
 //    "backend": "opencv-dnn",                 or "torch"
-//    "condition": {"kind": "orientation-planes", "channels": 4, "rows": 48, "columns": 64},
+//    "condition": {"kind": "orientation-planes", "channels": 41, "rows": 24, "columns": 16},
 //                                             or "rgb" with 3 channels
-//    "motion": {"kind": "rotation-curve", "bands": 12, "scale": [0.05, 0.05, 0.02]},
+//    "motion": {"kind": "rotation-curve", "bands": 24, "scale": [0.04, 0.04, 0.08]},
 //                                             or {"kind": "dense-field", "rows": 64, "columns": 64,
 //                                                 "reference_row": "first"}   (or "middle")
 //    "diffusion": {"steps": 1000, "schedule": "linear", "objective": "x0"},
 //                                             schedule "linear", "cosine"; objective "x0", "noise",
 //                                             "v"
 //    "sampling": {"steps": 4, "eta": 0, "guidance": 1, "guidance_rescale": 0},   all optional
-//    "time_embedding": {"size": 64, "max_period": 10000},     opencv-dnn only
+//    "time_embedding": {"size": 16},          opencv-dnn only, see time_embedding.h
 //    "weights": {"encoder": {"file": "encoder.onnx", "sha256": "..."},
 //                "denoiser": [{"file": "denoiser_1.onnx", "sha256": "...", "batch": 1},
 //                             {"file": "denoiser_8.onnx", "sha256": "...", "batch": 8}]}}
@@ -69,9 +69,8 @@ struct ModelInfo {
   ScheduleKind schedule = ScheduleKind::kLinear;
   int diffusion_steps = 1000;
   Objective objective = Objective::kX0;
-  DdimOptions sampling;  // the defaults of this model
-  int time_embedding_size = 0;
-  double time_embedding_max_period = 0.0;
+  DdimOptions sampling;               // the defaults of this model
+  int time_embedding_size = 0;        // opencv-dnn
   WeightFile encoder;                 // opencv-dnn
   std::vector<WeightFile> denoisers;  // opencv-dnn, ascending batch size, at least one
   WeightFile network;                 // torch

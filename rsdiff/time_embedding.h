@@ -6,9 +6,9 @@
 
 namespace rsstab::rsdiff {
 
-// Sinusoidal embedding of a time step: [sin(t f_0) .. sin(t f_{h-1}), cos(t f_0) .. cos(t f_{h-1})]
-// with h = size / 2 and f_k = max_period^(-k / (h - 1)). `size` even, at least 4; max_period > 1.
-[[nodiscard]] std::vector<float> TimeEmbedding(int t, int size, double max_period);
+// What a compact denoiser is told of the time step t of T: with phase p_k = t / T * pi/2 * 2^k,
+// [cos p_0 .. cos p_{h-1}, sin p_0 .. sin p_{h-1}], h = size / 2. `size` even, at least 2.
+[[nodiscard]] std::vector<float> TimeEmbedding(int t, int diffusion_steps, int size);
 
 }  // namespace rsstab::rsdiff
 

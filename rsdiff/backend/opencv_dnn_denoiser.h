@@ -11,10 +11,14 @@
 
 namespace rsstab::rsdiff {
 
-// ONNX networks run by OpenCV DNN. The encoder takes "condition" (1 x C x R x K) and gives
-// features, once per image. A denoiser takes "x" (S x 3 x B x 1), "t" (S x E, see TimeEmbedding)
-// and "features" (as the encoder gave them; all zero = without the image) and gives the prediction.
-// It is exported for fixed batch sizes S; a batch of states runs in pieces, the last one padded.
+// ONNX networks of fixed shapes, run by OpenCV DNN. For motion states of C x B x K (rotation
+// curves: 3 x bands x 1):
+//   encoder:   "condition" 1 x channels x rows x columns  ->  features 1 x F x ...
+//   denoiser:  "x" S x C x B x K, "time" S x E x B x 1 (TimeEmbedding, the same on every row) and
+//              "features" S x F x ...  ->  prediction S x C x B x K
+// The encoder runs once per image. Without the image the features are all zero. A denoiser is
+// exported for a fixed batch size S, or for several; a batch of states runs in pieces of the size
+// that needs fewest of them, the last one padded.
 // Errors: as LoadDenoiser.
 [[nodiscard]] Result<std::unique_ptr<Denoiser>> LoadOpenCvDnnDenoiser(
     const ModelInfo& model, const BackendOptions& options);

@@ -41,7 +41,7 @@ done < <(grep -rnE '^#include "(stabilizer/pipeline|rsdiff|cli|plugin)/' stabili
 # Heavy libraries stay behind .cc files, in headers that hold solver functors or libav handles.
 while IFS= read -r hit; do
   complain "$hit: drags a heavy library into a public header"
-done < <(grep -rnE '#include <(opencv2|ceres|libav|libsw)' igf stabilizer cli --include='*.h' |
+done < <(grep -rnE '#include <(opencv2|ceres|libav|libsw)' igf rsdiff stabilizer cli --include='*.h' |
   grep -vE '_residuals\.h|_detail\.h|igf/street/|cli/media/(av_|input_file|output_file|pixel_format|.*_internal)')
 
 if command -v clang-format >/dev/null; then
