@@ -73,6 +73,9 @@ Status CheckOptions(const DdimOptions& options, int diffusion_steps) {
   if (!(options.eta >= 0.0 && options.eta <= 1.0)) {
     return Fail(ErrorCode::kInvalidArgument, "eta {} must lie within 0 and 1", options.eta);
   }
+  if (!(options.clip_range > 0.0)) {
+    return Fail(ErrorCode::kInvalidArgument, "clip range {} must lie above 0", options.clip_range);
+  }
   if (!std::isfinite(options.guidance)) {
     return Fail(ErrorCode::kInvalidArgument, "guidance must be a finite number");
   }
@@ -143,7 +146,7 @@ Result<Tensor> DdimSampler::Sample(Denoiser& denoiser, const DdimOptions& option
                     "sampling, time step {}: the network returned a number that is not finite", t);
       }
       if (options.clip) {
-        x0 = std::clamp(x0, -1.0, 1.0);
+        x0 = std::clamp(x0, -options.clip_range, options.clip_range);
       }
       if (is_last) {
         states.values[i] = static_cast<float>(x0);

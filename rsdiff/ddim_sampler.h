@@ -18,9 +18,10 @@ enum class Objective {
 };
 
 struct DdimOptions {
-  int steps = 8;     // 1 .. T
-  double eta = 0.0;  // 0 = deterministic after the first noise, 1 = as noisy as DDPM; >= 0
-  bool clip = true;  // keep every estimate of x0 in [-1, 1]
+  int steps = 8;            // 1 .. T
+  double eta = 0.0;         // 0 = deterministic after the first noise, 1 = as noisy as DDPM; >= 0
+  bool clip = true;         // keep every estimate of x0 within +-clip_range
+  double clip_range = 1.0;  // network units, above 0
   // Classifier-free guidance (Ho & Salimans 2022): null + guidance (with image - null). 1 = just
   // the prediction with the image (half the work), 0 = just the one without.
   double guidance = 1.0;

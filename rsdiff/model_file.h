@@ -46,7 +46,8 @@ struct WeightFile {
 //    "diffusion": {"steps": 1000, "schedule": "linear", "objective": "x0"},
 //                                             schedule "linear", "cosine"; objective "x0", "noise",
 //                                             "v"
-//    "sampling": {"steps": 4, "eta": 0, "guidance": 1, "guidance_rescale": 0},   all optional
+//    "sampling": {"steps": 4, "eta": 0, "clip_range": 1, "guidance": 1, "guidance_rescale": 0},
+//                                             all but "steps" optional
 //    "time_embedding": {"size": 16},          opencv-dnn only, see time_embedding.h
 //    "weights": {"encoder": {"file": "encoder.onnx", "sha256": "..."},
 //                "denoiser": [{"file": "denoiser_1.onnx", "sha256": "...", "batch": 1},
