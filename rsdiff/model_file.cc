@@ -13,6 +13,7 @@
 
 #include "igf/base/json_fields_detail.h"
 #include "igf/base/whole_file.h"
+#include "rsdiff/orientation_planes.h"
 
 namespace rsstab::rsdiff {
 namespace {
@@ -134,10 +135,19 @@ class Fields {
 
 void ReadCondition(const Fields& fields, ModelInfo& info) {
   info.condition_kind = fields.Choice("kind", kConditions);
-  info.condition = {fields.Whole("channels", 1, 64), fields.Whole("rows", 1, kMaxSide),
+  info.condition = {fields.Whole("channels", 1, kMaxSide), fields.Whole("rows", 1, kMaxSide),
                     fields.Whole("columns", 1, kMaxSide)};
   if (info.condition_kind == ConditionKind::kRgb && info.condition.channels != 3) {
     fields.Complain(ErrorCode::kCorruptData, "a condition of kind \"rgb\" has 3 channels");
+  }
+  if (info.condition_kind == ConditionKind::kOrientationPlanes &&
+      info.condition != kOrientationShape) {
+    fields.Complain(
+        ErrorCode::kUnsupported,
+        fmt::format("orientation planes of {}x{}x{} are not known to this program, "
+                    "which makes {}x{}x{}",
+                    info.condition.channels, info.condition.rows, info.condition.columns,
+                    kOrientationShape.channels, kOrientationShape.rows, kOrientationShape.columns));
   }
 }
 

@@ -38,7 +38,7 @@ struct WeightFile {
 // What a model file says of a network. The file is JSON:
 //   {"format": "rs-stabilize model", "version": 1, "name": "compact",
 //    "backend": "opencv-dnn",                 or "torch"
-//    "condition": {"kind": "orientation-planes", "channels": 41, "rows": 24, "columns": 16},
+//    "condition": {"kind": "orientation-planes", "channels": 73, "rows": 24, "columns": 16},
 //                                             or "rgb" with 3 channels
 //    "motion": {"kind": "rotation-curve", "bands": 24, "scale": [0.04, 0.04, 0.08]},
 //                                             or {"kind": "dense-field", "rows": 64, "columns": 64,

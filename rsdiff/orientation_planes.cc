@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 #include <vector>
 
 namespace rsstab::rsdiff {
@@ -18,7 +19,7 @@ constexpr int kColumns = kOrientationShape.columns;
 constexpr int kCells = kRows * kColumns;
 constexpr int kGrayRows = 2;  // of one cell
 constexpr int kGrayColumns = 4;
-static_assert(kPlanes + kGrayRows * kGrayColumns + 1 == kOrientationShape.channels);
+static_assert(2 * kPlanes + kGrayRows * kGrayColumns + 1 == kOrientationShape.channels);
 
 constexpr double kWorkingArea_px = 384.0 * 288.0;
 constexpr int kMinWidth = kColumns * kGrayColumns;
@@ -113,6 +114,34 @@ std::vector<double> SumByDirection(const DoubleAngle& angle) {
   return sums;
 }
 
+// Writes each strength's share of its family (upright or level) in its cell.
+void WriteShares(std::span<const float> strengths, std::span<float> shares) {
+  double energy = 0.0;
+  for (const float strength : strengths) {
+    energy += static_cast<double>(strength) * static_cast<double>(strength);
+  }
+  // A family that holds little of the picture's energy per cell is mostly noise.
+  const double floor = 0.05 * energy / kCells + 1e-3;
+  for (const auto& [first, bins] :
+       {std::pair(0, kUprightBins), std::pair(kUprightBins, kLevelBins)}) {
+    for (int cell = 0; cell < kCells; ++cell) {
+      const auto squared = [&](int bin) {
+        const auto strength =
+            static_cast<double>(strengths[static_cast<std::size_t>((first + bin) * kCells + cell)]);
+        return strength * strength;
+      };
+      double sum = floor;
+      for (int bin = 0; bin < bins; ++bin) {
+        sum += squared(bin);
+      }
+      for (int bin = 0; bin < bins; ++bin) {
+        shares[static_cast<std::size_t>((first + bin) * kCells + cell)] =
+            static_cast<float>(std::sqrt(squared(bin) / sum));
+      }
+    }
+  }
+}
+
 // The whole picture in kGrayRows x kGrayColumns pixels per cell, mean 0, deviation about 1; one
 // channel per pixel of the cell.
 void WriteSmallGray(const cv::Mat& gray, std::span<float> channels) {
@@ -160,7 +189,8 @@ Result<Tensor> OrientationPlanes(std::span<const std::uint8_t> gray, const Pictu
       const double level = std::sqrt(sums[i] / pixels_per_cell) * (kByteScale * 2.0) + 0.5;
       values[i] = static_cast<float>(std::floor(std::min(level, 255.0)) / kByteScale);
     }
-    WriteSmallGray(picture, values.subspan(sums.size(), kGrayRows * kGrayColumns * kCells));
+    WriteShares(values.first(sums.size()), values.subspan(sums.size(), sums.size()));
+    WriteSmallGray(picture, values.subspan(2 * sums.size(), kGrayRows * kGrayColumns * kCells));
   } catch (const cv::Exception& e) {
     return Fail(ErrorCode::kInternal, "measuring edges of {}x{} px failed: {}", size.width,
                 size.height, e.what());

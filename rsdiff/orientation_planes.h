@@ -12,13 +12,20 @@ namespace rsstab::rsdiff {
 
 // The compact network's view of a picture: how edges lean, cell by cell. Rolling shutter shows in
 // the direction of lines, so their directions are measured here (double-angle structure tensor) and
-// not left to the network. `train/orientation_planes.py` is the same definition for training.
+// not left to the network. `orientation_planes` and `condition_tensor` in train/ are
+// the same definition for training.
 //
-// Channels: 20 bins of dx/dy of edges nearer to the vertical, 12 of dy/dx of edges nearer to the
-// horizontal (square root of the mean edge strength per pixel of the cell, kept to 8 bits as in
-// training), 2 x 4 pixels of a small normalised grey picture, and the cell's x in image heights
-// from the middle.
-inline constexpr Shape kOrientationShape{41, 24, 16};
+// Channels:
+//   0..31   edge strength by direction: 20 bins of dx/dy of edges nearer to the vertical, 12 of
+//   dy/dx
+//           of edges nearer to the horizontal; square root of the mean per pixel of the cell, in
+//           steps of 1/32, as training stores them
+//   32..63  the same as shares: square root of (strength squared / its sum over the cell's upright
+//   or
+//           level bins), less where there is little of either
+//   64..71  2 x 4 pixels per cell of a small grey picture, mean 0, deviation about 1
+//   72      the cell's x in image heights from the middle
+inline constexpr Shape kOrientationShape{73, 24, 16};
 
 struct PictureSize {
   int width = 0;

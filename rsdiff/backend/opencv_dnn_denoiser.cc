@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <opencv2/core/utils/logger.hpp>
 #include <opencv2/dnn.hpp>
 #include <optional>
 #include <string>
@@ -58,6 +59,18 @@ std::string Reason(const cv::Exception& e) {
   std::replace(text.begin(), text.end(), '\n', ' ');
   return text;
 }
+
+// OpenCV prints what it throws. While this lives it does not, since the error says it.
+class QuietOpenCv {
+ public:
+  QuietOpenCv() : level_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
+  ~QuietOpenCv() { cv::utils::logging::setLogLevel(level_); }
+  QuietOpenCv(const QuietOpenCv&) = delete;
+  QuietOpenCv& operator=(const QuietOpenCv&) = delete;
+
+ private:
+  cv::utils::logging::LogLevel level_;
+};
 
 std::vector<int> Sizes(int batch, const Shape& shape) {
   return {batch, shape.channels, shape.rows, shape.columns};
@@ -255,6 +268,7 @@ Result<std::unique_ptr<Denoiser>> LoadOpenCvDnnDenoiser(const ModelInfo& model,
   if (!device) {
     return Propagate(device.error());
   }
+  const QuietOpenCv quiet;
   Result<cv::dnn::Net> encoder = LoadNet(model.encoder, *device);
   if (!encoder) {
     return Propagate(encoder.error());

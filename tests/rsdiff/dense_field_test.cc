@@ -68,10 +68,10 @@ TEST(DenseStateFromField, IsTheInverse) {
   const MotionField back = *FieldFromDenseState(state, kPublished, 800, 600, 299.5, {65, 257});
   for (int row = 0; row < 257; ++row) {
     for (int column = 0; column < 65; ++column) {
-      // Straight lines between small pixels 9.4 rows apart; more where the field has a kink, since
-      // rows above the first count as the first.
+      // Straight lines between small pixels 9.4 rows apart, bends of 1e-3 px a row and row; more
+      // where the field has a kink, since rows above the first count as the first.
       const bool has_kink = row < 12 || row > 244;
-      EXPECT_LT((field.At(column, row) - back.At(column, row)).norm(), has_kink ? 0.5F : 0.01F)
+      EXPECT_LT((field.At(column, row) - back.At(column, row)).norm(), has_kink ? 0.5F : 0.02F)
           << column << "," << row;
     }
   }
@@ -105,13 +105,13 @@ TEST(WithMiddleReference, IsWhatTheMiddleRowsCameraSees) {
     for (int row = 0; row < grid.rows; ++row) {
       for (int column = 0; column < grid.columns; ++column) {
         const Eigen::Vector2d x = middle.VertexPosition(column, row);
-        // Looked up between vertices 5 rows apart. The two pictures are shifted against each other
-        // by up to 25 px; so near the edges, where rows outside the frame count as the outermost
-        // ones and points have no source, the field is only carried on.
+        // The two pictures are shifted against each other by up to 25 px. So near the edges, rows
+        // outside the frame count as the outermost ones: a kink that is only carried on.
         const bool is_inside =
             x.x() > 25.0 && x.x() < width - 26.0 && x.y() > 25.0 && x.y() < height - 26.0;
+        // Inside, it is looked up between vertices 5 rows apart.
         EXPECT_LT((restated->At(column, row) - middle.At(column, row)).norm(),
-                  is_inside ? 0.01F : 1.0F)
+                  is_inside ? 0.01F : 2.5F)
             << x.transpose();
       }
     }

@@ -20,6 +20,10 @@ std::optional<std::filesystem::path> DevelopmentData(const std::string& relative
   return file;
 }
 
+std::filesystem::path SourceFile(const std::string& relative) {
+  return std::filesystem::path(RSSTAB_SOURCE_DIR) / relative;
+}
+
 TemporaryFolder::TemporaryFolder() {
   std::string pattern = (std::filesystem::temp_directory_path() / "rsstab-test-XXXXXX").string();
   if (mkdtemp(pattern.data()) == nullptr) {

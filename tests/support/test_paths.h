@@ -13,6 +13,9 @@ namespace rsstab::testing {
 // when absent. Tests then GTEST_SKIP() with a reason.
 [[nodiscard]] std::optional<std::filesystem::path> DevelopmentData(const std::string& relative);
 
+// A file of the source tree, for example "tests/rsdiff/data/tiny_model".
+[[nodiscard]] std::filesystem::path SourceFile(const std::string& relative);
+
 // A fresh, empty folder that is removed when the object dies.
 class TemporaryFolder {
  public:

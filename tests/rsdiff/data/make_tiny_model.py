@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 from onnx import TensorProto, checker, helper, numpy_helper
 
-CHANNELS, ROWS, COLUMNS = 41, 24, 16
+CHANNELS, ROWS, COLUMNS = 73, 24, 16
 FEATURES, AXES, TIME = 2, 3, 4
 
 
