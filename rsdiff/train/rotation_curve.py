@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 BANDS = 24
-SCALE = np.array([0.04, 0.04, 0.08], np.float32)  # network unit of a, b, r: about two sigma
+SCALE = np.array([0.01, 0.01, 0.02], np.float32)  # network unit of a, b, r: about one sigma
 
 
 def band_times(bands: int = BANDS) -> np.ndarray:
