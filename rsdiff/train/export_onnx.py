@@ -38,7 +38,7 @@ from rotation_curve import BANDS, SCALE
 
 BATCH_SIZES = (1, 8)
 OPSET = 11  # the newest that OpenCV 4.6 reads without gaps
-CLIP_RANGE = 4.0  # network units: curves reach beyond one, about two sigma
+CLIP_RANGE = 12.0
 DIFFUSION_STEPS = 1000
 SAMPLING_STEPS = 4
 TOLERANCE = 1e-3  # largest difference from PyTorch, network units
