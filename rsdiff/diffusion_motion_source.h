@@ -11,9 +11,9 @@
 namespace rsstab::rsdiff {
 
 struct DiffusionSourceOptions {
-  SamplingOptions sampling;        // one seed for the clip: the same noise for every frame
-  std::optional<double> focal_px;  // of the clip's frames; 1 frame width unless given
-  double strength = 1.0;           // the field and its spread are multiplied by it, 0 .. 2
+  SamplingOptions sampling = {};        // one seed for the clip: the same noise for every frame
+  std::optional<double> focal_px = {};  // of the clip's frames; 1 frame width unless given
+  double strength = 1.0;                // the field and its spread are multiplied by it, 0 .. 2
 };
 
 // Readout motion told by each frame's picture alone. Every frame starts from the same noise, so
