@@ -19,25 +19,39 @@ tl::unexpected<Error> NothingValid() {
 
 }  // namespace
 
-Result<double> EndPointError(std::span<const Eigen::Vector2f> estimate,
-                             std::span<const Eigen::Vector2f> truth, PixelMask valid) {
+Result<FieldError> CompareFields(std::span<const Eigen::Vector2f> estimate,
+                                 std::span<const Eigen::Vector2f> truth, PixelMask valid) {
   if (estimate.size() != truth.size() || (!valid.empty() && valid.size() != truth.size())) {
     return Fail(ErrorCode::kInvalidArgument,
                 "Fields of {} and {} pixels with a mask of {} cannot be compared.", estimate.size(),
                 truth.size(), valid.size());
   }
-  double sum = 0.0;
-  std::size_t count = 0;
+  FieldError error;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     if (Counts(valid, i)) {
-      sum += (estimate[i] - truth[i]).cast<double>().norm();
-      ++count;
+      const Eigen::Vector2d difference = (estimate[i] - truth[i]).cast<double>();
+      error.length += difference.norm();
+      error.horizontal += std::abs(difference.x());
+      error.vertical += std::abs(difference.y());
+      error.valid_pixels += 1.0;
     }
   }
-  if (count == 0) {
+  if (error.valid_pixels == 0.0) {
     return NothingValid();
   }
-  return sum / static_cast<double>(count);
+  error.length /= error.valid_pixels;
+  error.horizontal /= error.valid_pixels;
+  error.vertical /= error.valid_pixels;
+  return error;
+}
+
+Result<double> EndPointError(std::span<const Eigen::Vector2f> estimate,
+                             std::span<const Eigen::Vector2f> truth, PixelMask valid) {
+  const auto error = CompareFields(estimate, truth, valid);
+  if (!error) {
+    return Propagate(error.error());
+  }
+  return error->length;
 }
 
 Result<double> EndPointError(const MotionField& estimate, const MotionField& truth,

@@ -14,8 +14,21 @@ namespace rsstab::stabilizer {
 // End-point error: mean length of the difference of two displacement fields, px of the picture the
 // fields are stated for. Any thread.
 
+// The difference of two fields, by its parts: means over the pixels, px.
+struct FieldError {
+  double length = 0.0;        // end-point error
+  double horizontal = 0.0;    // of |x|: the part that skew, twist and sideways wobble make
+  double vertical = 0.0;      // of |y|
+  double valid_pixels = 0.0;  // how many of them
+};
+
 // Dense fields, one displacement a pixel, row by row. `valid` as for PSNR.
 // Errors: kInvalidArgument for different sizes or no valid pixel.
+[[nodiscard]] Result<FieldError> CompareFields(std::span<const Eigen::Vector2f> estimate,
+                                               std::span<const Eigen::Vector2f> truth,
+                                               PixelMask valid = {});
+
+// Its length alone. Errors as above.
 [[nodiscard]] Result<double> EndPointError(std::span<const Eigen::Vector2f> estimate,
                                            std::span<const Eigen::Vector2f> truth,
                                            PixelMask valid = {});

@@ -10,7 +10,7 @@ complain() {
   bad=1
 }
 
-mapfile -t sources < <(find igf rsdiff stabilizer plugin cli tests bench samples \
+mapfile -t sources < <(find igf rsdiff stabilizer evaluation plugin cli tests bench samples \
   -name '*.h' -o -name '*.cc' -o -name '*.c' 2>/dev/null | sort)
 
 for file in "${sources[@]}"; do
@@ -32,6 +32,7 @@ arrows() {
 arrows igf/base 'igf/base/'
 arrows igf 'igf/'
 [[ -d rsdiff ]] && arrows rsdiff 'igf/base/|rsdiff/'
+arrows evaluation 'igf/|rsdiff/|stabilizer/|evaluation/'
 arrows cli/media 'igf/base/|cli/media/'
 while IFS= read -r hit; do
   complain "$hit: points up the module graph"
@@ -41,7 +42,8 @@ done < <(grep -rnE '^#include "(stabilizer/pipeline|rsdiff|cli|plugin)/' stabili
 # Heavy libraries stay behind .cc files, in headers that hold solver functors or libav handles.
 while IFS= read -r hit; do
   complain "$hit: drags a heavy library into a public header"
-done < <(grep -rnE '#include <(opencv2|ceres|libav|libsw)' igf rsdiff stabilizer cli --include='*.h' |
+done < <(grep -rnE '#include <(opencv2|ceres|libav|libsw)' igf rsdiff stabilizer evaluation cli \
+  --include='*.h' |
   grep -vE '_residuals\.h|_detail\.h|igf/street/|cli/media/(av_|input_file|output_file|pixel_format|.*_internal)')
 
 if command -v clang-format >/dev/null; then
