@@ -40,7 +40,7 @@ struct WeightFile {
 //    "backend": "opencv-dnn",                 or "torch"
 //    "condition": {"kind": "orientation-planes", "channels": 73, "rows": 24, "columns": 16},
 //                                             or "rgb" with 3 channels
-//    "motion": {"kind": "rotation-curve", "bands": 24, "scale": [0.04, 0.04, 0.08]},
+//    "motion": {"kind": "rotation-curve", "bands": 24, "scale": [0.01, 0.01, 0.02]},
 //                                             or {"kind": "dense-field", "rows": 64, "columns": 64,
 //                                                 "reference_row": "first"}   (or "middle")
 //    "diffusion": {"steps": 1000, "schedule": "linear", "objective": "x0"},

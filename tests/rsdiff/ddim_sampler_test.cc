@@ -19,6 +19,7 @@ constexpr Shape kState{3, 4, 1};
 constexpr Shape kCondition{1, 2, 2};
 constexpr double kMean = 0.2;
 constexpr double kDeviation = 0.1;
+constexpr double kNoClip = std::numeric_limits<double>::infinity();
 constexpr double kFloat = 2e-6;  // float32 states over a few steps
 
 NoiseSchedule Cosine(int steps) { return *NoiseSchedule::Create(ScheduleKind::kCosine, steps); }
@@ -146,7 +147,10 @@ TEST(DdimSampler, ObjectivesAgree) {
     SeededNoise noise(4, 3);
     samples[static_cast<int>(objective)] =
         *DdimSampler(schedule, objective)
-             .Sample(denoiser, {.steps = 8, .eta = 1.0, .clip = objective == Objective::kX0},
+             .Sample(denoiser,
+                     {.steps = 8,
+                      .eta = 1.0,
+                      .clip_range = objective == Objective::kX0 ? 1.0 : kNoClip},
                      Noise(3), noise);
   }
   for (std::size_t i = 0; i < samples[0].values.size(); ++i) {
@@ -172,8 +176,12 @@ TEST(DdimSampler, ClipsAndDerivesTheNoiseAgain) {
     const double x = std::sqrt(second) * 1.0 + std::sqrt(1.0 - second) * derived;
     EXPECT_NEAR(sample.values[i], std::clamp(0.5 * x, -1.0, 1.0), kFloat);
   }
-  const Tensor unclipped = *DdimSampler(schedule, Objective::kX0)
-                                .Sample(denoiser, {.steps = 1, .clip = false}, start, noise);
+  const Tensor wider = *DdimSampler(schedule, Objective::kX0)
+                            .Sample(denoiser, {.steps = 1, .clip_range = 3.0}, start, noise);
+  EXPECT_THAT(wider.values, ::testing::Each(3.0F));
+  const Tensor unclipped =
+      *DdimSampler(schedule, Objective::kX0)
+           .Sample(denoiser, {.steps = 1, .clip_range = kNoClip}, start, noise);
   EXPECT_THAT(unclipped.values, ::testing::Each(5.0F));
 }
 
@@ -185,7 +193,7 @@ TEST(DdimSampler, FreshNoiseHasTheStatedSize) {
   SeededNoise noise(11, 1);
   const Tensor sample =
       *DdimSampler(schedule, Objective::kX0)
-           .Sample(denoiser, {.steps = 2, .eta = 1.0, .clip = false}, start, noise);
+           .Sample(denoiser, {.steps = 2, .eta = 1.0, .clip_range = kNoClip}, start, noise);
   Tensor fresh(1, kState);
   SeededNoise(11, 1).Fill(fresh);
   const double a = schedule.Signal(999);
@@ -265,6 +273,8 @@ TEST(DdimSampler, RefusesWhatMakesNoSense) {
   EXPECT_EQ(code({.eta = nan}, Noise(1)), ErrorCode::kInvalidArgument);
   EXPECT_EQ(code({.guidance = nan}, Noise(1)), ErrorCode::kInvalidArgument);
   EXPECT_EQ(code({.guidance_rescale = 1.1}, Noise(1)), ErrorCode::kInvalidArgument);
+  EXPECT_EQ(code({.clip_range = 0.0}, Noise(1)), ErrorCode::kInvalidArgument);
+  EXPECT_EQ(code({.clip_range = nan}, Noise(1)), ErrorCode::kInvalidArgument);
   EXPECT_EQ(code({}, Tensor(0, kState)), ErrorCode::kInvalidArgument);
   EXPECT_EQ(code({}, Tensor(1, {3, 5, 1})), ErrorCode::kInvalidArgument);
 }

@@ -57,6 +57,7 @@ TEST(ReadModelFile, ReadsACompactModelFromItsFolderOrItsFile) {
     EXPECT_EQ(info->objective, Objective::kX0);
     EXPECT_EQ(info->sampling.steps, 4);
     EXPECT_EQ(info->sampling.eta, 0.5);
+    EXPECT_EQ(info->sampling.clip_range, 4.0);
     EXPECT_EQ(info->sampling.guidance, 1.5);
     EXPECT_EQ(info->sampling.guidance_rescale, 0.25);
     EXPECT_EQ(info->time_embedding_size, 4);
@@ -86,6 +87,7 @@ TEST(ReadModelFile, ReadsAReferenceModel) {
   EXPECT_EQ(info->reference_row, ReferenceRow::kFirst);
   EXPECT_EQ(info->network.path, folder / "net.pt");
   EXPECT_EQ(info->sampling.eta, 0.0);
+  EXPECT_EQ(info->sampling.clip_range, 1.0);
   EXPECT_EQ(info->sampling.guidance, 1.0);
   const Status weights = CheckWeights(info->network);
   ASSERT_FALSE(weights);
@@ -129,6 +131,7 @@ TEST(ReadModelFile, RefusesDamageAndSaysWhere) {
       {"/diffusion/objective", "y", ErrorCode::kUnsupported, "objective"},
       {"/sampling/steps", 1001, ErrorCode::kCorruptData, "sampling.steps"},
       {"/sampling/eta", 1.5, ErrorCode::kCorruptData, "sampling.eta"},
+      {"/sampling/clip_range", 0.0, ErrorCode::kCorruptData, "clip_range"},
       {"/sampling/guidance", "much", ErrorCode::kCorruptData, "guidance"},
       {"/time_embedding/size", 3, ErrorCode::kCorruptData, "even"},
       {"/weights", nullptr, ErrorCode::kCorruptData, "weights"},

@@ -86,7 +86,13 @@ def main() -> None:
         },
         "motion": {"kind": "rotation-curve", "bands": ROWS, "scale": [0.04, 0.05, 0.08]},
         "diffusion": {"steps": 1000, "schedule": "cosine", "objective": "x0"},
-        "sampling": {"steps": 4, "eta": 0.5, "guidance": 1.5, "guidance_rescale": 0.25},
+        "sampling": {
+            "steps": 4,
+            "eta": 0.5,
+            "clip_range": 4,
+            "guidance": 1.5,
+            "guidance_rescale": 0.25,
+        },
         "time_embedding": {"size": TIME},
         "weights": {
             "encoder": {"file": "encoder.onnx", "sha256": encoder},
