@@ -76,9 +76,6 @@ Status CheckOptions(const DdimOptions& options, int diffusion_steps) {
   if (!(options.clip_range > 0.0)) {
     return Fail(ErrorCode::kInvalidArgument, "clip range {} must lie above 0", options.clip_range);
   }
-  if (!(options.clip_range > 0.0)) {
-    return Fail(ErrorCode::kInvalidArgument, "clip range {} must be positive", options.clip_range);
-  }
   if (!std::isfinite(options.guidance)) {
     return Fail(ErrorCode::kInvalidArgument, "guidance must be a finite number");
   }

@@ -183,7 +183,6 @@ void ReadDiffusion(const Fields& root, ModelInfo& info) {
   info.sampling.steps = sampling.Whole("steps", 1, info.diffusion_steps);
   info.sampling.eta = sampling.Number("eta", 0.0, 1.0, plain.eta);
   info.sampling.clip_range = sampling.Number("clip_range", 1e-6, 1e6, plain.clip_range);
-  info.sampling.clip_range = sampling.Number("clip_range", 1e-6, 1e6, plain.clip_range);
   info.sampling.guidance = sampling.Number("guidance", 0.0, 100.0, plain.guidance);
   info.sampling.guidance_rescale =
       sampling.Number("guidance_rescale", 0.0, 1.0, plain.guidance_rescale);
