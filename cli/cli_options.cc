@@ -56,6 +56,11 @@ std::variant<Invocation, EarlyExit> ParseCommandLine(const std::vector<std::stri
   if (const Status status = pipeline::Validate(invocation.stabilize); !status) {
     return UsageError(app->get_name(), status.error().message);
   }
+  if (id == CommandId::kCorrect) {
+    if (const Status status = Validate(invocation.correct); !status) {
+      return UsageError(app->get_name(), status.error().message);
+    }
+  }
   return invocation;
 }
 

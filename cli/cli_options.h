@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/commands/compare_options.h"
+#include "cli/commands/correct_options.h"
 #include "cli/commands/simulate_options.h"
 #include "cli/encode_options.h"
 #include "cli/run_options.h"
@@ -19,7 +20,7 @@ inline constexpr int kExitDone = 0;
 inline constexpr int kExitFailed = 1;
 inline constexpr int kExitUsage = 2;
 
-enum class CommandId { kStabilize, kAnalyze, kRender, kInfo, kCompare, kSimulate };
+enum class CommandId { kStabilize, kAnalyze, kRender, kCorrect, kInfo, kCompare, kSimulate };
 
 // A command line, understood: which command, and everything it was told. Fields that a command does
 // not take keep their defaults.
@@ -30,6 +31,7 @@ struct Invocation {
   bool json = false;          // info: for programs instead of people
   pipeline::StabilizeOptions stabilize;
   EncodeOptions encode;
+  CorrectOptions correct;
   CompareOptions compare;
   SimulateOptions simulate;
   RunOptions run;

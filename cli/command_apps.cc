@@ -77,6 +77,13 @@ void AddBothClips(CLI::App& app, Invocation& invocation) {
   app.add_option("OUT", invocation.compare.output, "The clip after.")->required()->type_name("");
 }
 
+void AddPictures(CLI::App& app, Invocation& invocation) {
+  app.add_option("IMAGE", invocation.correct.images,
+                 "Pictures: files, folders, and patterns such as 'holiday/*.jpg'.")
+      ->required()
+      ->type_name("");
+}
+
 void AddInput(CLI::App& app, Invocation& invocation) {
   app.add_option("IN", invocation.input, "The clip: any file that FFmpeg's libraries read.")
       ->required()
@@ -114,6 +121,17 @@ std::vector<CommandText> BuildTexts() {
        "writes the steady clip from an analysis file",
        "Runs the second pass alone. An analysis file that was made from another clip is refused.",
        {{"rs-stabilize render shaky.mp4 --crf 14", "uses shaky.rsstab beside it"}}},
+      {CommandId::kCorrect,
+       "correct",
+       "[OPTIONS] IMAGE... -o OUT",
+       "takes the rolling shutter out of photographs",
+       "Estimates from each picture alone how the camera moved while it was read out, and undoes "
+       "that. Size, bit depth, transparency and metadata stay; the picture is enlarged just so far "
+       "that no border shows. Rows are those of the stored picture, which are the sensor's: a "
+       "picture whose pixels were turned afterwards cannot be corrected.",
+       {{"rs-stabilize correct train.jpg -o upright.jpg", "one picture"},
+        {"rs-stabilize correct 'trip/*.jpg' scans -o corrected", "many, into a folder"},
+        {"rs-stabilize correct train.jpg --field fields", "the motion only"}}},
       {CommandId::kInfo,
        "info",
        "[OPTIONS] IN",
@@ -167,6 +185,8 @@ std::unique_ptr<CLI::App> MakeCommandApp(CommandId id, Invocation& invocation) {
     AddFolder(*app, invocation);
   } else if (id == CommandId::kCompare) {
     AddBothClips(*app, invocation);
+  } else if (id == CommandId::kCorrect) {
+    AddPictures(*app, invocation);
   } else {
     AddInput(*app, invocation);
   }
@@ -205,6 +225,10 @@ std::unique_ptr<CLI::App> MakeCommandApp(CommandId id, Invocation& invocation) {
       app->add_flag("--json", invocation.json, "Print one JSON object instead of text.")
           ->group("Output");
       AddTable(*app, stabilize, invocation.stabilize, OptionStage::kAnalysis);
+      AddTable(*app, RunOptionTable(), invocation.run);
+      break;
+    case CommandId::kCorrect:
+      AddTable(*app, CorrectOptionTable(), invocation.correct);
       AddTable(*app, RunOptionTable(), invocation.run);
       break;
     case CommandId::kCompare:

@@ -53,11 +53,13 @@ ProgressSink StandardErrorSink(ProgressStyle style) {
 
 ProgressReporter::ProgressReporter(ProgressSink sink) : sink_(std::move(sink)) {}
 
-void ProgressReporter::BeginPass(int pass, int passes, std::string_view name, std::int64_t frames) {
+void ProgressReporter::BeginPass(int pass, int passes, std::string_view name, std::int64_t frames,
+                                 std::string_view unit) {
   const std::lock_guard lock(mutex_);
   pass_ = pass;
   passes_ = passes;
   name_ = name;
+  unit_ = unit;
   frames_ = frames;
   done_ = 0;
   last_tenth_ = 0;
@@ -164,12 +166,16 @@ void ProgressReporter::EraseBar() {
   }
 }
 
+std::string ProgressReporter::Rate(const Estimate& estimate) const {
+  return fmt::format("{:.1f} {}", estimate.fps, unit_ == "frames" ? "fps" : unit_ + "/s");
+}
+
 std::string ProgressReporter::BarText(const Estimate& estimate) const {
   std::string head = fmt::format("[{}/{}] {:<9}", pass_, passes_, name_);
   std::string tail =
       frames_ > 0 ? fmt::format(" {}/{}", done_, frames_) : fmt::format(" {}", done_);
   if (estimate.fps > 0.0) {
-    tail += fmt::format("  {:.1f} fps", estimate.fps);
+    tail += "  " + Rate(estimate);
   }
   if (estimate.eta_s >= 0.0) {
     tail += "  ETA " + Clock(estimate.eta_s);
@@ -189,12 +195,12 @@ std::string ProgressReporter::BarText(const Estimate& estimate) const {
 std::string ProgressReporter::PlainText(const Estimate& estimate) const {
   std::string text = fmt::format("pass {}/{} {}: {}", pass_, passes_, name_, done_);
   if (frames_ > 0) {
-    text += fmt::format(" of {} frames ({} %)", frames_, 100 * done_ / frames_);
+    text += fmt::format(" of {} {} ({} %)", frames_, unit_, 100 * done_ / frames_);
   } else {
-    text += " frames";
+    text += " " + unit_;
   }
   if (estimate.fps > 0.0) {
-    text += fmt::format(", {:.1f} fps", estimate.fps);
+    text += ", " + Rate(estimate);
   }
   if (estimate.eta_s > 0.0) {
     text += ", ETA " + Clock(estimate.eta_s);

@@ -28,8 +28,10 @@ class ProgressReporter {
  public:
   explicit ProgressReporter(ProgressSink sink);
 
-  // `pass` counts from 1 to `passes`; `frames` of the whole pass, 0 when unknown.
-  void BeginPass(int pass, int passes, std::string_view name, std::int64_t frames);
+  // `pass` counts from 1 to `passes`; `frames` of the whole pass, 0 when unknown. `unit` is what
+  // people call them.
+  void BeginPass(int pass, int passes, std::string_view name, std::int64_t frames,
+                 std::string_view unit = "frames");
   // Frames of this pass that are done. Cheap: most calls print nothing.
   void Update(std::int64_t frames_done);
   // Closes the pass; its frames are done. Erases the bar.
@@ -49,6 +51,7 @@ class ProgressReporter {
   [[nodiscard]] Estimate EstimateNow(double now_s) const;
   void Print(double now_s, bool closing);
   void EraseBar();
+  [[nodiscard]] std::string Rate(const Estimate& estimate) const;
   [[nodiscard]] std::string BarText(const Estimate& estimate) const;
   [[nodiscard]] std::string PlainText(const Estimate& estimate) const;
   [[nodiscard]] std::string JsonText(const Estimate& estimate, bool closing) const;
@@ -59,6 +62,7 @@ class ProgressReporter {
   int pass_ = 0;
   int passes_ = 0;
   std::string name_;
+  std::string unit_;
   std::int64_t frames_ = 0;
   std::int64_t done_ = 0;
   double start_s_ = 0.0;  // of this pass

@@ -79,7 +79,7 @@ Result<pipeline::RsInputs> ReadRsInputs(const pipeline::StabilizeOptions& option
       return Propagate(status.error());
     }
   }
-  if (options.rs == pipeline::RsChoice::kOff) {
+  if (options.rs == pipeline::RsChoice::kOff || options.rs == pipeline::RsChoice::kDiffusion) {
     return inputs;
   }
 

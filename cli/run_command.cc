@@ -12,6 +12,7 @@
 #include "cli/command_context.h"
 #include "cli/commands/analyze.h"
 #include "cli/commands/compare.h"
+#include "cli/commands/correct.h"
 #include "cli/commands/info.h"
 #include "cli/commands/render.h"
 #include "cli/commands/simulate.h"
@@ -22,13 +23,14 @@
 namespace rsstab::cli {
 namespace {
 
-// Runs `job`, which counts its frames, as the one pass of a command.
+// Runs `job`, which counts its frames or pictures, as the one pass of a command.
 template <typename Job>
-Status RunAsPass(const CommandContext& context, const char* name, const Job& job) {
+Status RunAsPass(const CommandContext& context, const char* name, const char* unit,
+                 const Job& job) {
   bool begun = false;
   const Status status = job([&](std::int64_t done, std::int64_t frames) {
     if (!begun) {
-      context.reporter->BeginPass(1, 1, name, frames);
+      context.reporter->BeginPass(1, 1, name, frames, unit);
       begun = true;
     }
     context.reporter->Update(done);
@@ -41,16 +43,23 @@ Status RunAsPass(const CommandContext& context, const char* name, const Job& job
 }
 
 Status Simulate(const Invocation& invocation, const CommandContext& context) {
-  return RunAsPass(context, "simulate", [&](const SimulateProgress& progress) {
+  return RunAsPass(context, "simulate", "frames", [&](const SimulateProgress& progress) {
     return RunSimulate(invocation.simulate, context.logger, progress);
+  });
+}
+
+Status Correct(const Invocation& invocation, const CommandContext& context) {
+  return RunAsPass(context, "correct", "pictures", [&](const CorrectProgress& progress) {
+    return RunCorrect(invocation.correct, context.logger, progress);
   });
 }
 
 Status Compare(const Invocation& invocation, const CommandContext& context) {
   std::ostringstream report;
-  const Status status = RunAsPass(context, "compare", [&](const CompareProgress& progress) {
-    return RunCompare(invocation.compare, context.logger, report, progress);
-  });
+  const Status status =
+      RunAsPass(context, "compare", "frames", [&](const CompareProgress& progress) {
+        return RunCompare(invocation.compare, context.logger, report, progress);
+      });
   if (status && !(std::cout << report.str() << std::flush)) {
     return Fail(ErrorCode::kIo, "standard output cannot be written");
   }
@@ -67,6 +76,8 @@ Status Dispatch(const Invocation& invocation, const CommandContext& context) {
       return RunRender(invocation, context);
     case CommandId::kInfo:
       return RunInfo(invocation, context);
+    case CommandId::kCorrect:
+      return Correct(invocation, context);
     case CommandId::kCompare:
       return Compare(invocation, context);
     case CommandId::kSimulate:

@@ -6,6 +6,7 @@ rsstab_build_packages=(
   cmake ninja-build ccache g++ pkg-config
   libeigen3-dev libexpected-dev libspdlog-dev libfmt-dev
   libceres-dev libopencv-dev nlohmann-json3-dev zlib1g-dev libssl-dev libcli11-dev
+  libexiv2-dev libzip-dev
   libavformat-dev libavcodec-dev libavutil-dev libswscale-dev
   libgtest-dev libgmock-dev)
 rsstab_check_packages=(clang-format)

@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kRowsPerBlock = 16;
 
-// Positions farther outside than this many pixels are all alike (black), so clamping them there
-// keeps the fixed-point arithmetic in range.
+// Positions farther outside than this many pixels are all alike, so clamping them there keeps the
+// fixed-point arithmetic in range.
 constexpr float kOutsideMarginPx = 8.0F;
 
 // One axis of a plane's samples among the map's vertices.
@@ -97,8 +97,12 @@ void FillLines(const Line& x, const Line& y, int count, std::int32_t* out_x, std
 // Source positions of the planes of one geometry (all full-size planes, or all chroma planes).
 class PositionSampler {
  public:
-  PositionSampler(const BackwardMap& map, const PlaneAxis& x, const PlaneAxis& y)
-      : map_(map), x_(x), y_(y) {
+  PositionSampler(const BackwardMap& map, const PlaneAxis& x, const PlaneAxis& y,
+                  OutsidePixels outside)
+      : map_(map),
+        x_(x),
+        y_(y),
+        reach_(outside == OutsidePixels::kBlack ? kOutsideMarginPx : 0.0F) {
     int begin = 0;
     for (int cell = 0; cell < x.cells; ++cell) {
       int end = begin;
@@ -111,8 +115,8 @@ class PositionSampler {
     }
   }
 
-  // Positions of a row of samples in 1 / kPhases of a sample, clamped to a little outside the
-  // plane.
+  // Positions of a row of samples in 1 / kPhases of a sample, clamped to the plane, or to a little
+  // outside it where that is to show.
   void Row(int row, std::int32_t* out_x, std::int32_t* out_y) const {
     const int cell_y = y_.CellOf(row);
     const auto fraction = static_cast<float>(y_.GridPosition(row) - cell_y);
@@ -122,9 +126,9 @@ class PositionSampler {
       return {luma.x() * x_.PhasesPerPixel() + x_.PhaseOfPixelZero(),
               luma.y() * y_.PhasesPerPixel() + y_.PhaseOfPixelZero()};
     };
-    const float low = -kOutsideMarginPx * kPhases;
-    const float high_x = (static_cast<float>(x_.size) + kOutsideMarginPx) * kPhases;
-    const float high_y = (static_cast<float>(y_.size) + kOutsideMarginPx) * kPhases;
+    const float low = -reach_ * kPhases;
+    const float high_x = (static_cast<float>(x_.size - 1) + reach_) * kPhases;
+    const float high_y = (static_cast<float>(y_.size - 1) + reach_) * kPhases;
     Eigen::Vector2f left = between_rows(0);
     for (std::size_t cell = 0; cell < segments_.size(); ++cell) {
       const Segment& segment = segments_[cell];
@@ -143,6 +147,7 @@ class PositionSampler {
   const BackwardMap& map_;
   PlaneAxis x_;
   PlaneAxis y_;
+  float reach_;                    // px beyond the outermost pixel centres
   std::vector<Segment> segments_;  // one per cell, left to right
 };
 
@@ -217,8 +222,8 @@ PlaneWarper::PlaneWarper(KernelSet kernels)
                FilterBank(Interpolation::kLanczos)} {}
 
 Status PlaneWarper::Warp(const FrameView& source, const BackwardMap& map,
-                         Interpolation interpolation, Frame& destination,
-                         WorkerPool& workers) const {
+                         Interpolation interpolation, Frame& destination, WorkerPool& workers,
+                         OutsidePixels outside) const {
   if (Status status = CheckArguments(source, map, destination); !status) {
     return status;
   }
@@ -233,7 +238,8 @@ Status PlaneWarper::Warp(const FrameView& source, const BackwardMap& map,
         PlaneAxis(width, group.chroma ? layout.chroma_shift_x : 0,
                   group.chroma ? layout.chroma_offset_x : 0.0, map.width(), map.columns()),
         PlaneAxis(height, group.chroma ? layout.chroma_shift_y : 0,
-                  group.chroma ? layout.chroma_offset_y : 0.0, map.height(), map.rows()));
+                  group.chroma ? layout.chroma_offset_y : 0.0, map.height(), map.rows()),
+        outside);
 
     workers.ForBlocks(height, kRowsPerBlock, [&](int begin, int end) {
       std::vector<std::int32_t> source_x(static_cast<std::size_t>(width * group.channels));

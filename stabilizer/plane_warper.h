@@ -13,6 +13,12 @@
 
 namespace rsstab::stabilizer {
 
+// What shows where the source lies outside the picture.
+enum class OutsidePixels {
+  kBlack,
+  kNearestEdge,  // the edge goes on
+};
+
 // Resamples a picture through a backward map: once per plane, in the picture's own format. Planar,
 // semi-planar and packed layouts of 8 to 16 bits.
 //
@@ -20,8 +26,8 @@ namespace rsstab::stabilizer {
 // on luma position (i 2^shift_x + offset_x, j 2^shift_y + offset_y) of the layout.
 //
 // Source positions are rounded to 1 / kPhases of a pixel of the plane. Filter taps beyond the edge
-// repeat the edge; a pixel whose source lies more than half a pixel outside its plane, or is not a
-// number, becomes black.
+// repeat the edge; what a pixel becomes whose source lies more than half a pixel outside its plane
+// is the caller's choice. A source that is not a number lies outside.
 //
 // Any order of frames. The result does not depend on the number of threads, nor on the kernels.
 class PlaneWarper {
@@ -32,8 +38,8 @@ class PlaneWarper {
   // not share memory. `map` must be of that size, too. Strides are free on both sides.
   // kInvalidArgument when sizes or layouts differ or a plane is missing.
   [[nodiscard]] Status Warp(const FrameView& source, const BackwardMap& map,
-                            Interpolation interpolation, Frame& destination,
-                            WorkerPool& workers) const;
+                            Interpolation interpolation, Frame& destination, WorkerPool& workers,
+                            OutsidePixels outside = OutsidePixels::kBlack) const;
 
  private:
   KernelSet kernels_;

@@ -38,9 +38,16 @@ Result<std::string> ReadWholeFile(const std::string& path, std::uint64_t max_byt
 }
 
 Status WriteWholeFile(const std::string& path, const std::string& content) {
+  return WriteWholeFile(path, [&content](std::ostream& out) {
+    out.write(content.data(), static_cast<std::streamsize>(content.size()));
+  });
+}
+
+Status WriteWholeFile(const std::string& path,
+                      const std::function<void(std::ostream& out)>& write) {
   const std::string partial = path + ".part";
   std::ofstream out(partial, std::ios::binary | std::ios::trunc);
-  out.write(content.data(), static_cast<std::streamsize>(content.size()));
+  write(out);
   out.close();
   std::error_code error;
   if (!out) {

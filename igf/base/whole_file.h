@@ -3,6 +3,8 @@
 #define RSSTAB_IGF_BASE_WHOLE_FILE_H_
 
 #include <cstdint>
+#include <functional>
+#include <iosfwd>
 #include <string>
 
 #include "igf/base/result.h"
@@ -18,6 +20,11 @@ namespace rsstab {
 // has the final name. Replaces an existing file.
 // Errors: kIo.
 [[nodiscard]] Status WriteWholeFile(const std::string& path, const std::string& content);
+
+// The same for content that is made piece by piece: `write` puts it into the stream, and what it
+// puts there after the stream has failed is lost without harm.
+[[nodiscard]] Status WriteWholeFile(const std::string& path,
+                                    const std::function<void(std::ostream& out)>& write);
 
 }  // namespace rsstab
 

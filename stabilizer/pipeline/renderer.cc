@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stabilizer/pipeline/renderer.h"
 
-#include <algorithm>
 #include <optional>
 #include <utility>
 
 #include "igf/base/parallel_for.h"
-#include "stabilizer/crop_planner.h"
 #include "stabilizer/luma_proxy.h"
+#include "stabilizer/pipeline/covered_map.h"
 #include "stabilizer/pipeline/warp_assembly.h"
 #include "stabilizer/plane_warper.h"
 
@@ -18,11 +17,6 @@ namespace {
 constexpr std::int64_t kFingerprintEvery = 30;
 // The same frame decoded again differs by less than one level, re-encoded by two.
 constexpr double kMaxFingerprintDistance = 4.0;
-// Steps of a thousandth until the composed map covers the picture; see Compose().
-constexpr int kMaxCropSteps = 100;
-constexpr double kCropStep = 0.999;
-// Rounding of the map to float; a source this far beyond the last pixel centre is that pixel.
-constexpr double kRoundOffPx = 1e-3;
 
 }  // namespace
 
@@ -43,23 +37,11 @@ struct Renderer::Impl {
   stabilizer::PlaneWarper warper;
   std::int64_t num_frames = 0;
 
-  // The hard guarantee of no empty pixel: the planner looked at the outline of the crop window in a
-  // finite number of points; the map that is rendered is checked on every vertex, which is exact.
   [[nodiscard]] stabilizer::BackwardMap Compose(const stabilizer::FrameAnalysis& frame) const {
     const stabilizer::ClipAnalysis& clip = reader->clip();
-    const stabilizer::FrameWarp warp = AssembleWarp(frame, clip.width, clip.height, clip.camera);
-    double crop = clip.fixed_zoom ? clip.smallest_crop_ratio : frame.crop_ratio;
-    stabilizer::BackwardMap map =
-        stabilizer::ComposeBackwardMap(stabilizer::WithCrop(warp, crop), grid);
-    for (int step = 0; step < kMaxCropSteps && stabilizer::OverhangPx(map) > kRoundOffPx; ++step) {
-      crop *= kCropStep;
-      map = stabilizer::ComposeBackwardMap(stabilizer::WithCrop(warp, crop), grid);
-    }
-    if (stabilizer::OverhangPx(map) > kRoundOffPx) {
-      // No window of this warp is inside the picture: leave the frame as it was recorded.
-      return {clip.width, clip.height, grid.columns, grid.rows};
-    }
-    return map;
+    const double crop = clip.fixed_zoom ? clip.smallest_crop_ratio : frame.crop_ratio;
+    return ComposeCoveredMap(AssembleWarp(frame, clip.width, clip.height, clip.camera), crop, grid)
+        .map;
   }
 };
 

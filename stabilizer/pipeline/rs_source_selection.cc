@@ -8,6 +8,8 @@
 #include "igf/gyro_integrator.h"
 #include "igf/gyro_motion_source.h"
 #include "igf/gyro_video_sync.h"
+#include "rsdiff/diffusion_motion_source.h"
+#include "rsdiff/model_path.h"
 
 namespace rsstab::pipeline {
 namespace {
@@ -155,10 +157,44 @@ Result<RsSelection> SelectGyro(const StabilizeOptions& options, CameraKnowledge 
   return selection;
 }
 
+Result<RsSelection> SelectDiffusion(const StabilizeOptions& options, const CameraKnowledge& known) {
+  const auto model_file = rsdiff::FindModel(options.model);
+  if (!model_file) {
+    return Propagate(model_file.error());
+  }
+  auto estimator = rsdiff::SingleImageEstimator::Load(*model_file, {.device = options.device});
+  if (!estimator) {
+    return Propagate(std::move(estimator.error()));
+  }
+  const rsdiff::ModelInfo model = estimator->model();
+  rsdiff::DiffusionSourceOptions source_options;
+  source_options.sampling.samples = options.samples;
+  source_options.sampling.steps = options.sampling_steps;
+  source_options.sampling.seed = options.seed;
+  source_options.strength = options.rs_strength;
+  if (known.focal_is_known) {
+    source_options.focal_px = known.camera.fx;
+  }
+  auto source = rsdiff::DiffusionMotionSource::Create(std::move(*estimator), source_options);
+  if (!source) {
+    return Propagate(std::move(source.error()));
+  }
+  RsSelection selection = WithoutSource(
+      known,
+      fmt::format(
+          "diffusion model {} ({}), {} samples of {} steps a frame, seed {}{}", model.name,
+          model_file->string(), options.samples,
+          options.sampling_steps > 0 ? options.sampling_steps : model.sampling.steps, options.seed,
+          options.rs_strength == 1.0 ? "" : fmt::format(", strength {}", options.rs_strength)));
+  selection.source = std::make_unique<rsdiff::DiffusionMotionSource>(std::move(*source));
+  return selection;
+}
+
 }  // namespace
 
 bool NeedsTracks(const StabilizeOptions& options, const RsInputs& inputs) {
-  return options.rs != RsChoice::kOff && inputs.gyro.has_value();
+  return (options.rs == RsChoice::kAuto || options.rs == RsChoice::kGyro) &&
+         inputs.gyro.has_value();
 }
 
 Result<RsSelection> SelectRsSource(const StabilizeOptions& options, const ClipGeometry& clip,
@@ -170,6 +206,9 @@ Result<RsSelection> SelectRsSource(const StabilizeOptions& options, const ClipGe
   }
   if (options.rs == RsChoice::kOff) {
     return WithoutSource(known, "left alone, as asked for");
+  }
+  if (options.rs == RsChoice::kDiffusion) {
+    return SelectDiffusion(options, known);
   }
   if (!inputs.gyro) {
     if (options.rs == RsChoice::kGyro) {

@@ -33,6 +33,7 @@ struct RsInputs {
 // Chooses the rolling-shutter source, and says why. `tracks`: of consecutive frames, needed when
 // NeedsTracks(); may be thinned out. With kAuto an untrustworthy gyro means no correction and a
 // warning; with kGyro it is an error: kNotFound without a log, kUntrustworthy when it does not fit.
+// With kDiffusion: the errors of rsdiff::FindModel and rsdiff::SingleImageEstimator::Load.
 [[nodiscard]] Result<RsSelection> SelectRsSource(const StabilizeOptions& options,
                                                  const ClipGeometry& clip, const RsInputs& inputs,
                                                  std::span<const PointTracks> tracks,

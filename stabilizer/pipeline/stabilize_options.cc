@@ -3,6 +3,9 @@
 
 #include <limits>
 #include <utility>
+#include <vector>
+
+#include "rsdiff/backend/backend_options.h"
 
 namespace rsstab::pipeline {
 namespace {
@@ -12,6 +15,14 @@ using stabilizer::Interpolation;
 
 constexpr int kMaxMeshCells = 64;  // a side; finer cells hold too few tracks to mean anything
 constexpr double kMaxZoom = 10.0;
+
+std::vector<std::pair<std::string, std::string>> DeviceChoices() {
+  std::vector<std::pair<std::string, std::string>> choices;
+  for (const char* device : rsdiff::kDeviceNames) {
+    choices.emplace_back(device, device);
+  }
+  return choices;
+}
 
 // "16x16" in two fields.
 Spec MeshOption() {
@@ -86,12 +97,15 @@ OptionTable<StabilizeOptions> BuildTable() {
   using O = StabilizeOptions;
 
   group = "Rolling shutter";
-  add(ChoiceOption<O, RsChoice>(
-          "rs", &O::rs,
-          {{"auto", RsChoice::kAuto}, {"gyro", RsChoice::kGyro}, {"off", RsChoice::kOff}}),
+  add(ChoiceOption<O, RsChoice>("rs", &O::rs,
+                                {{"auto", RsChoice::kAuto},
+                                 {"gyro", RsChoice::kGyro},
+                                 {"diffusion", RsChoice::kDiffusion},
+                                 {"off", RsChoice::kOff}}),
       OptionStage::kAnalysis,
       "What tells the motion inside a frame: auto takes a gyro log when there is a trustworthy one "
-      "and corrects nothing otherwise; gyro wants the log or fails; off never corrects.");
+      "and corrects nothing otherwise; gyro wants the log or fails; diffusion estimates it from "
+      "each frame's picture; off never corrects.");
   add(TextOption("gyro", "FILE", &O::gyro_file), OptionStage::kAnalysis,
       "Gyro log: MP4/MOV with GoPro telemetry, .gcsv, or CSV with the header t,gx,gy,gz (s, "
       "rad/s). "
@@ -112,6 +126,19 @@ OptionTable<StabilizeOptions> BuildTable() {
   add(TextOption("camera", "FILE", &O::camera_file), OptionStage::kAnalysis,
       "Camera JSON (size, focal length, lens distortion, readout time) or a Gyroflow lens "
       "profile.");
+
+  group = "Rolling shutter from pictures (--rs diffusion)";
+  add(TextOption("model", "FILE", &O::model), OptionStage::kAnalysis,
+      "Diffusion model: its JSON file, the folder of it, or the name of an installed one. Without "
+      "it the installed compact model.");
+  add(IntegerOption("samples", "N", &O::samples, 1, 1024), OptionStage::kAnalysis,
+      "Motions drawn for each frame, of which the mean is taken.");
+  add(IntegerOption("steps", "N", &O::sampling_steps, 0, 1000), OptionStage::kAnalysis,
+      "Denoising steps of each draw; 0 takes what the model says.");
+  add(RealOption("rs-strength", "SHARE", &O::rs_strength, {0.0, 2.0}), OptionStage::kAnalysis,
+      "Share of the estimated motion that is corrected.");
+  add(ChoiceOption<O, std::string>("device", &O::device, DeviceChoices()), OptionStage::kAnalysis,
+      "Where the network runs; all but cpu need an OpenCV that was built for it.");
 
   group = "Stabilization";
   add(RealOption("smoothness", "S", &O::smoothness_s, {0.0, 10.0}), OptionStage::kAnalysis,
@@ -158,6 +185,12 @@ Status Validate(const StabilizeOptions& options) {
   if (options.rs == RsChoice::kOff && !options.gyro_file.empty()) {
     return Fail(ErrorCode::kInvalidArgument,
                 "--rs off uses no gyro log, but --gyro {} was given; leave one of them out",
+                options.gyro_file);
+  }
+  if (options.rs == RsChoice::kDiffusion && !options.gyro_file.empty()) {
+    return Fail(ErrorCode::kInvalidArgument,
+                "--rs diffusion looks at the pictures only, but --gyro {} was given; leave one of "
+                "them out",
                 options.gyro_file);
   }
   return {};

@@ -14,9 +14,10 @@ namespace rsstab::pipeline {
 
 // What tells how the camera moved while a frame was read out.
 enum class RsChoice {
-  kAuto,  // a gyro log when there is a trustworthy one, else no correction
-  kGyro,  // a gyro log, or fail
-  kOff,   // leave rolling shutter alone
+  kAuto,       // a gyro log when there is a trustworthy one, else no correction
+  kGyro,       // a gyro log, or fail
+  kDiffusion,  // each frame's picture, by a diffusion model
+  kOff,        // leave rolling shutter alone
 };
 
 // How the picture is enlarged to hide the borders that move in.
@@ -36,6 +37,13 @@ struct StabilizeOptions {
   std::optional<double> readout_s;      // see rolling_shutter.h; empty: camera file, log, or found
   std::optional<double> focal_px;  // at the clip's full size; empty: camera file, log, or found
   std::string camera_file;         // camera JSON or lens profile
+
+  // Only for kDiffusion.
+  std::string model;         // see rsdiff/model_path.h; empty: the installed compact model
+  int samples = 8;           // drawn for each frame; their mean is taken
+  int sampling_steps = 0;    // DDIM steps; 0 = as the model says
+  double rs_strength = 1.0;  // share of the estimated motion that is corrected
+  std::string device = "cpu";
 
   double smoothness_s = 1.0;    // time constant of the smooth path; 0 = only rolling shutter
   bool tripod = false;          // hold one view for each scene
