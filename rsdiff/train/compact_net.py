@@ -69,7 +69,7 @@ class ResidualBlock(nn.Module):
 
 
 class GridAttention(nn.Module):
-    """Self-attention along one side of a grid, residual: columns of a band, or bands of a column."""
+    """Self-attention along a side of a grid, residual: columns of a band, or bands of a column."""
 
     def __init__(self, width: int, heads: int, rows: int, columns: int, along_rows: bool):
         super().__init__()
@@ -215,7 +215,7 @@ def condition_tensor(
     gray = (gray - mean) / (deviation + 8.0)
     cells = gray.reshape(-1, rows, cell_rows, columns, cell_columns).permute(0, 2, 4, 1, 3)
     cells = cells.reshape(-1, cell_rows * cell_columns, rows, columns)
-    across = (torch.arange(columns) + 0.5) / columns - 0.5
+    across = (torch.arange(columns, device=aspect.device) + 0.5) / columns - 0.5
     across = (aspect[:, None, None, None] * across).expand(-1, 1, rows, columns)
     energy = planes.float() / planes_module.BYTE_SCALE
     squared = energy**2

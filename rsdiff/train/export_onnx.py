@@ -26,11 +26,11 @@ from torch import nn
 from torch.nn.utils.fusion import fuse_conv_bn_eval
 
 import orientation_planes as planes_module
+from checkpoint import TIMESTEPS, load_averaged
 from compact_net import (
     AXES,
     CONDITION_CHANNELS,
     TIME_CHANNELS,
-    CompactConfig,
     CompactNet,
     GridAttention,
 )
@@ -39,7 +39,6 @@ from rotation_curve import BANDS, SCALE
 BATCH_SIZES = (1, 8)
 OPSET = 11  # the newest that OpenCV 4.6 reads without gaps
 CLIP_RANGE = 12.0
-DIFFUSION_STEPS = 1000
 SAMPLING_STEPS = 4
 TOLERANCE = 1e-3  # largest difference from PyTorch, network units
 
@@ -146,14 +145,6 @@ class ExportDenoiser(nn.Module):
         return summed + self.direct(torch.cat([h, noisy], dim=1))
 
 
-def load_ema(checkpoint: Path) -> tuple[CompactNet, dict]:
-    """The network with its averaged weights, and what else the checkpoint says."""
-    state = torch.load(checkpoint, map_location="cpu")
-    net = CompactNet(CompactConfig(**state["config"]))
-    net.load_state_dict(state["ema"])
-    return net.eval(), state
-
-
 def denoiser_inputs(net: CompactNet, batch: int) -> dict[str, torch.Tensor]:
     width = net.config.feature_width
     return {
@@ -252,7 +243,7 @@ def model_description(files: dict[str, bytes], training: dict) -> dict:
             "bands": BANDS,
             "scale": [round(float(s), 6) for s in SCALE],
         },
-        "diffusion": {"steps": DIFFUSION_STEPS, "schedule": "linear", "objective": "x0"},
+        "diffusion": {"steps": TIMESTEPS, "schedule": "linear", "objective": "x0"},
         "sampling": {"steps": SAMPLING_STEPS, "eta": 0, "clip_range": CLIP_RANGE},
         "time_embedding": {"size": TIME_CHANNELS},
         "weights": {
@@ -263,6 +254,14 @@ def model_description(files: dict[str, bytes], training: dict) -> dict:
     }
 
 
+def write_model(folder: Path, files: dict[str, bytes], training: dict) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, data in files.items():
+        (folder / name).write_bytes(data)
+    description = model_description(files, training)
+    (folder / "model.json").write_text(json.dumps(description, indent=2) + "\n")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("checkpoint", type=Path)
@@ -270,14 +269,11 @@ def main() -> None:
     parser.add_argument("--time", type=int, default=0, metavar="RUNS", help="time OpenCV as well")
     args = parser.parse_args()
     torch.manual_seed(1)
-    net, state = load_ema(args.checkpoint)
+    net, state = load_averaged(args.checkpoint)
+    if state["net"] != "compact":
+        raise SystemExit(f"{args.checkpoint}: is of the {state['net']} network, not compact")
     files = export(net)
-    args.output.mkdir(parents=True, exist_ok=True)
-    for name, data in files.items():
-        (args.output / name).write_bytes(data)
-    training = {"step": state["step"], "config": state["config"]}
-    description = model_description(files, training)
-    (args.output / "model.json").write_text(json.dumps(description, indent=2) + "\n")
+    write_model(args.output, files, {"step": state["step"], "config": state["config"]})
     print(f"{args.output}: {sum(map(len, files.values())) / 1e6:.2f} MB")
     for name, data in files.items() if args.time else ():
         batch = int(name.split("_")[1][:-5]) if "_" in name else 0

@@ -3,7 +3,8 @@
 
 To first order the backward field of a curve (a, b, r) is
   u = a - r*y,  v = b + r*x,   all in image heights, (x, y) from the image centre;
-exact fields come from `igf`. Good to a few percent, which is what losses and monitors need.
+exact fields come from `igf`. What it leaves out grows as (x / focal length)^2: a few percent at two
+widths, which is what losses and monitors need, more at the edges of wide angles.
 """
 
 from __future__ import annotations
@@ -26,19 +27,30 @@ def first_order_field(curve: torch.Tensor, aspect: torch.Tensor, columns: int) -
     return torch.stack([u, v], dim=1)
 
 
-def photometric_loss(curve, aspect, rs_small, gs_small) -> torch.Tensor:
-    """Mean absolute difference of the warped RS picture and the GS picture, N values."""
-    rows, columns = rs_small.shape[1:]
-    field = first_order_field(curve, aspect, columns)
-    field = F.interpolate(field, size=(rows, columns), mode="bilinear", align_corners=False)
+def warp(picture: torch.Tensor, field: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+    """The picture I(x + G(x)) and which of its pixels have a source, N x 1 x rows x columns.
+
+    picture: N x C x rows x columns; field: N x 2 x rows x columns, in widths and heights.
+    """
+    rows, columns = picture.shape[2:]
     y, x = torch.meshgrid(
-        (torch.arange(rows) + 0.5) * 2 / rows - 1, (torch.arange(columns) + 0.5) * 2 / columns - 1,
+        (torch.arange(rows) + 0.5) * 2 / rows - 1,
+        (torch.arange(columns) + 0.5) * 2 / columns - 1,
         indexing="ij",
     )
-    grid_x = x.to(field) + field[:, 0] * 2 / aspect[:, None, None]
-    grid_y = y.to(field) + field[:, 1] * 2
-    source = rs_small[:, None].float() / 255
-    warped = F.grid_sample(source, torch.stack([grid_x, grid_y], dim=-1), align_corners=False)
-    inside = ((grid_x.abs() < 1) & (grid_y.abs() < 1)).float()
-    difference = (warped[:, 0] - gs_small.float() / 255).abs() * inside
-    return difference.mean(dim=(1, 2))
+    grid = torch.stack([x, y], dim=-1).to(field) + 2 * field.permute(0, 2, 3, 1)
+    warped = F.grid_sample(picture, grid, align_corners=False)
+    return warped, (grid.abs() < 1).all(dim=-1)[:, None]
+
+
+def curve_warp_field(curve: torch.Tensor, aspect: torch.Tensor, rows: int, columns: int):
+    """The first-order field of a curve on a picture's pixels, in widths and heights."""
+    field = first_order_field(curve, aspect, columns)
+    field = F.interpolate(field, size=(rows, columns), mode="bilinear", align_corners=False)
+    return torch.stack([field[:, 0] / aspect[:, None, None], field[:, 1]], dim=1)
+
+
+def photometric_loss(rs: torch.Tensor, gs: torch.Tensor, field: torch.Tensor) -> torch.Tensor:
+    """Mean absolute difference of the warped RS picture (values 0..1) and the GS picture."""
+    warped, inside = warp(rs, field)
+    return ((warped - gs).abs() * inside).mean()

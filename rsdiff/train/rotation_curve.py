@@ -81,6 +81,34 @@ def gs_from_rs_map(
     )
 
 
+def rs_from_gs(
+    curve: RotationCurve, width: int, height: int, focal: float, points: np.ndarray
+) -> np.ndarray:
+    """Where the directions of global-shutter pixels were recorded, n x 2 -> n x 2 (x, y).
+
+    The fixed point p = H(t(p.y)) x by Newton's method on the row: the map is nearly straight in it.
+    Rows outside the frame count as exposed with the first or last one, as in `igf`.
+    """
+    rows = np.arange(height)
+    table = row_homographies(curve.at((rows + 0.5) / height - 0.5), width, height, focal)
+    x = np.column_stack([points, np.ones(len(points))])
+
+    def seen_at(row: np.ndarray) -> np.ndarray:
+        row = np.clip(row, 0.0, height - 1.0)
+        lower = np.minimum(row.astype(int), height - 2)
+        share = (row - lower)[:, None, None]
+        h = table[lower] * (1 - share) + table[lower + 1] * share
+        p = np.einsum("nij,nj->ni", h, x)
+        return p[:, :2] / p[:, 2:]
+
+    row = points[:, 1].astype(float)
+    for _ in range(8):
+        miss = seen_at(row)[:, 1] - row
+        slope = (seen_at(row + 0.5)[:, 1] - seen_at(row - 0.5)[:, 1]) - 1.0
+        row = row - miss / np.minimum(slope, -0.1)
+    return seen_at(row)
+
+
 class CurveSampler:
     """Draws random curves: steady, accelerating, oscillating, cut from gyro logs, mixed, still."""
 
@@ -100,8 +128,9 @@ class CurveSampler:
         elif kind < 0.44:
             shape = self._axis(rng)[:, None] * t
         elif kind < 0.54:
-            shape = self._axis(rng)[:, None] * t
-            shape = self._unit(shape) + self._unit(self._axis(rng)[:, None] * t**2) * rng.uniform(0, 1.5)
+            shape = self._unit(self._axis(rng)[:, None] * t)
+            bend = self._unit(self._axis(rng)[:, None] * t**2)
+            shape = shape + bend * rng.uniform(0, 1.5)
         elif kind < 0.76:
             shape = self._oscillation(rng, t)
         else:

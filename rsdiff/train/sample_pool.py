@@ -3,7 +3,7 @@
 """Keeps made samples on disk, so that a slow machine need not make each of them again.
 
 A pool is a folder of shards; a shard is a folder of .npy arrays, readable as memory maps.
-  sample_pool.py PHOTOS POOL --shards 20 --gyro FOLDER --first-photo 0 --last-photo 1070
+  sample_pool.py POOL --photos FOLDER --gyro FOLDER --shards 20
 Shard k is made from the seed (SEED, k): several processes may share the work (--begin).
 """
 
@@ -16,76 +16,86 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from gyro_logs import read_gyro_folder
-from rotation_curve import BANDS, CurveSampler
-from synthesis import Synthesizer, load_photos
+from data_source import add_source_options, open_source
+from samples import KINDS, Sample, SampleSource
 
 SHARD_SAMPLES = 10_000
-FIELDS = ("planes", "rs_small", "gs_small", "curve", "aspect")
+REFRESH_BATCHES = 500  # after so many, look whether shards were added
 
 
-def make_shard(synthesizer: Synthesizer, folder: Path, seed: tuple[int, int], count: int) -> None:
-    rng = np.random.default_rng(seed)
-    samples = [synthesizer.draw(rng) for _ in range(count)]
+def make_shard(source: SampleSource, folder: Path, seed: tuple[int, int], count: int) -> None:
+    arrays = source.batch(np.random.default_rng(seed), count)
     part = folder.with_suffix(".part")
     part.mkdir(parents=True, exist_ok=True)
-    for field in FIELDS:
-        np.save(part / f"{field}.npy", np.stack([getattr(s, field) for s in samples]))
+    for name, array in arrays.items():
+        np.save(part / f"{name}.npy", array)
     part.rename(folder)
 
 
 class SamplePool:
-    """All shards of a folder as one table; shards that appear later are found by refresh()."""
+    """All shards of a folder as one SampleSource; shards that appear later are found."""
 
-    def __init__(self, folder: Path):
+    def __init__(self, folder: Path, kind: str):
         self.folder = folder
-        self.shards: dict[str, dict[str, np.ndarray]] = {}
+        self.names = KINDS[kind]
+        self.shards: dict[str, Sample] = {}
+        self._batches = 0
         self.refresh()
+        if not self.shards:
+            raise SystemExit(f"{folder}: no shards; sample_pool.py makes them")
 
     def refresh(self) -> None:
         for path in sorted(self.folder.glob("shard-*")):
             if path.suffix != ".part" and path.name not in self.shards:
-                self.shards[path.name] = {
-                    f: np.load(path / f"{f}.npy", mmap_mode="r") for f in FIELDS
-                }
+                missing = [n for n in self.names if not (path / f"{n}.npy").exists()]
+                if missing:
+                    raise SystemExit(f"{path}: has no {missing[0]}.npy; was it made for this net?")
+                files = {n: path / f"{n}.npy" for n in self.names}
+                self.shards[path.name] = {n: np.load(f, mmap_mode="r") for n, f in files.items()}
 
     def __len__(self) -> int:
-        return sum(len(s["curve"]) for s in self.shards.values())
+        return sum(len(s["aspect"]) for s in self.shards.values())
 
-    def batch(self, rng: np.random.Generator, count: int, blocks: int = 8) -> dict[str, np.ndarray]:
+    def head(self, count: int) -> Sample:
+        """The first samples of the first shard."""
+        first = self.shards[min(self.shards)]
+        return {name: np.array(array[:count]) for name, array in first.items()}
+
+    def batch(self, rng: np.random.Generator, count: int, blocks: int = 8) -> Sample:
         """`count` samples: runs of neighbours (cheap to read) from `blocks` random places."""
-        names = list(self.shards)
-        run = count // blocks
+        self._batches += 1
+        if self._batches % REFRESH_BATCHES == 0:
+            self.refresh()
+        names = sorted(self.shards)
         parts = []
-        for _ in range(blocks):
+        for block in range(min(blocks, count)):
+            run = count // blocks + (block < count % blocks)
             shard = self.shards[names[rng.integers(len(names))]]
-            first = rng.integers(len(shard["curve"]) - run + 1)
-            parts.append({f: shard[f][first : first + run] for f in FIELDS})
-        return {f: np.concatenate([p[f] for p in parts]) for f in FIELDS}
+            first = rng.integers(len(shard["aspect"]) - run + 1)
+            parts.append({name: array[first : first + run] for name, array in shard.items()})
+        return {name: np.concatenate([p[name] for p in parts]) for name in self.names}
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("photos", type=Path)
     parser.add_argument("pool", type=Path)
-    parser.add_argument("--gyro", type=Path, help="folder of gyro logs")
+    add_source_options(parser)
+    parser.add_argument("--net", choices=list(KINDS), default="compact", help="what they are for")
     parser.add_argument("--begin", type=int, default=0, help="first shard")
     parser.add_argument("--shards", type=int, default=1)
     parser.add_argument("--samples", type=int, default=SHARD_SAMPLES, help="in one shard")
-    parser.add_argument("--first-photo", type=int, default=0)
-    parser.add_argument("--last-photo", type=int, default=None)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--held-out", action="store_true", help="from what training leaves out")
     args = parser.parse_args()
     cv2.setNumThreads(1)
-    photos = load_photos(args.photos)[args.first_photo : args.last_photo]
-    synthesizer = Synthesizer(photos, CurveSampler(read_gyro_folder(args.gyro) if args.gyro else []))
+    source = open_source(args, args.net, args.held_out)
     args.pool.mkdir(parents=True, exist_ok=True)
     for shard in range(args.begin, args.begin + args.shards):
         folder = args.pool / f"shard-{shard:04d}"
         if folder.exists():
             continue
         start = time.monotonic()
-        make_shard(synthesizer, folder, (args.seed, shard), args.samples)
+        make_shard(source, folder, (args.seed, shard), args.samples)
         print(f"{folder}: {args.samples / (time.monotonic() - start):.0f} samples/s", flush=True)
 
 

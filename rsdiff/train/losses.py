@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How far a prediction is from the truth, for training."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import torch
+
+WEIGHTS = ("snr", "clipped", "none")
+CLIPPED_SNR = (1.0, 5.0)
+
+
+@dataclass(frozen=True)
+class LossOptions:
+    weight: str = "clipped"
+    photometric: bool = False
+    drop_condition: float = 0.1  # share of samples that do not see their picture
+    large: float = 0.0  # motions of more network units (RMS) count less, 0 = all alike
+    draws: int = 4  # noisy states per picture: the encoder is dear, the denoiser cheap
+    regression: bool = False
+
+
+def time_weight(alphas_cumprod: torch.Tensor, kind: str) -> torch.Tensor:
+    """Weight of the squared x0 error at each time.
+
+    "snr" is the published one (that of plain noise prediction); "clipped" keeps late times, from
+    which sampling starts, from counting for nothing and early ones from drowning the others.
+    """
+    snr = alphas_cumprod / (1 - alphas_cumprod)
+    if kind == "snr":
+        return snr
+    if kind == "clipped":
+        return snr.clamp(*CLIPPED_SNR)
+    return torch.ones_like(snr)
+
+
+def size_weight(truth: torch.Tensor, large: float) -> torch.Tensor:
+    """Weight of each sample by the size of its motion: else a few huge ones rule the loss."""
+    if large == 0.0:
+        return torch.ones_like(truth.flatten(1)[:, 0])
+    return 2 / (1 + truth.square().flatten(1).mean(dim=1) / large**2)
+
+
+def state_loss(out: torch.Tensor, truth: torch.Tensor, weight: torch.Tensor) -> torch.Tensor:
+    """Mean over the samples of weight times mean squared error."""
+    return ((out - truth) ** 2).flatten(1).mean(dim=1).mul(weight).mean()
+
+
+def balanced(first: torch.Tensor, second: torch.Tensor) -> torch.Tensor:
+    """The sum, the second term rescaled to equal the first; gradients see a constant factor."""
+    return first + second * (first.detach() / second.detach().clamp(min=1e-6))
