@@ -291,7 +291,7 @@ Result<std::string> ReadWeights(const WeightFile& weights) {
   }
   const Result<std::string> digest = Sha256(*bytes);
   if (!digest) {
-    return digest;
+    return Propagate(digest.error());
   }
   if (*digest != weights.sha256) {
     return Fail(ErrorCode::kCorruptData,

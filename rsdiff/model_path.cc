@@ -22,11 +22,11 @@ bool Exists(const fs::path& path) {
 // The program or shared library that this function was linked into.
 fs::path OwnBinary() {
   std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  fs::path program = fs::read_symlink("/proc/self/exe", error);
   Dl_info info{};
   if (dladdr(reinterpret_cast<const void*>(&OwnBinary), &info) != 0 && info.dli_fname != nullptr) {
     // For the program itself this is argv[0], which need not be a path.
-    const fs::path holder = fs::canonical(info.dli_fname, error);
+    fs::path holder = fs::canonical(info.dli_fname, error);
     if (!error) {
       return holder;
     }

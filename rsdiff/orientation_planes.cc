@@ -5,15 +5,19 @@
 #include <cmath>
 #include <cstddef>
 #include <opencv2/imgproc.hpp>
-#include <utility>
 #include <vector>
 
 namespace rsstab::rsdiff {
 namespace {
 
-constexpr int kUprightBins = 20;
-constexpr int kLevelBins = 12;
-constexpr int kPlanes = kUprightBins + kLevelBins;
+// Bins of edges nearer to the vertical, and of those nearer to the horizontal.
+struct Family {
+  int first;
+  int bins;
+};
+constexpr Family kUpright{0, 20};
+constexpr Family kLevel{20, 12};
+constexpr int kPlanes = kUpright.bins + kLevel.bins;
 constexpr int kRows = kOrientationShape.rows;
 constexpr int kColumns = kOrientationShape.columns;
 constexpr int kCells = kRows * kColumns;
@@ -30,6 +34,11 @@ constexpr float kStrongGradient = 12.0F;  // contrast beyond which an edge count
 constexpr double kByteScale = 32.0;
 constexpr int kBorder_px = 3;  // sees a mirrored border, where every edge looks upright or level
 constexpr double kGrayFloor = 8.0;  // levels: keeps a picture without contrast without contrast
+
+// Place of a cell in a channel.
+std::size_t Index(int channel, int cell) {
+  return static_cast<std::size_t>(channel) * kCells + static_cast<std::size_t>(cell);
+}
 
 // Structure tensor of the picture, smoothed: gx gx - gy gy and 2 gx gy.
 struct DoubleAngle {
@@ -82,8 +91,8 @@ class SoftBins {
 
 // Edge strength per bin and cell, summed over the cell's pixels: kPlanes x kCells.
 std::vector<double> SumByDirection(const DoubleAngle& angle) {
-  const SoftBins upright(kUprightBins);
-  const SoftBins level(kLevelBins);
+  const SoftBins upright(kUpright.bins);
+  const SoftBins level(kLevel.bins);
   const int width = angle.difference.cols;
   const int height = angle.difference.rows;
   std::vector<double> sums(static_cast<std::size_t>(kPlanes) * kCells, 0.0);
@@ -104,9 +113,8 @@ std::vector<double> SumByDirection(const DoubleAngle& angle) {
       const float place = (is_upright ? upright : level).Place(slope);
       const int lower = static_cast<int>(place);
       const float share = place - static_cast<float>(lower);
-      const int plane = (is_upright ? 0 : kUprightBins) + lower;
-      double* sum =
-          &sums[static_cast<std::size_t>(plane * kCells + first_cell + column * kColumns / width)];
+      const int plane = (is_upright ? kUpright : kLevel).first + lower;
+      double* sum = &sums[Index(plane, first_cell + column * kColumns / width)];
       sum[0] += static_cast<double>(weight * (1.0F - share));
       sum[kCells] += static_cast<double>(weight * share);
     }
@@ -122,21 +130,18 @@ void WriteShares(std::span<const float> strengths, std::span<float> shares) {
   }
   // A family that holds little of the picture's energy per cell is mostly noise.
   const double floor = 0.05 * energy / kCells + 1e-3;
-  for (const auto& [first, bins] :
-       {std::pair(0, kUprightBins), std::pair(kUprightBins, kLevelBins)}) {
+  for (const Family& family : {kUpright, kLevel}) {
     for (int cell = 0; cell < kCells; ++cell) {
       const auto squared = [&](int bin) {
-        const auto strength =
-            static_cast<double>(strengths[static_cast<std::size_t>((first + bin) * kCells + cell)]);
+        const auto strength = static_cast<double>(strengths[Index(family.first + bin, cell)]);
         return strength * strength;
       };
       double sum = floor;
-      for (int bin = 0; bin < bins; ++bin) {
+      for (int bin = 0; bin < family.bins; ++bin) {
         sum += squared(bin);
       }
-      for (int bin = 0; bin < bins; ++bin) {
-        shares[static_cast<std::size_t>((first + bin) * kCells + cell)] =
-            static_cast<float>(std::sqrt(squared(bin) / sum));
+      for (int bin = 0; bin < family.bins; ++bin) {
+        shares[Index(family.first + bin, cell)] = static_cast<float>(std::sqrt(squared(bin) / sum));
       }
     }
   }
@@ -154,8 +159,8 @@ void WriteSmallGray(const cv::Mat& gray, std::span<float> channels) {
     for (int x = 0; x < kMinWidth; ++x) {
       const int channel = y % kGrayRows * kGrayColumns + x % kGrayColumns;
       const int cell = y / kGrayRows * kColumns + x / kGrayColumns;
-      channels[static_cast<std::size_t>(channel * kCells + cell)] = static_cast<float>(
-          (small.at<std::uint8_t>(y, x) - mean[0]) / (deviation[0] + kGrayFloor));
+      channels[Index(channel, cell)] = static_cast<float>((small.at<std::uint8_t>(y, x) - mean[0]) /
+                                                          (deviation[0] + kGrayFloor));
     }
   }
 }
@@ -190,7 +195,7 @@ Result<Tensor> OrientationPlanes(std::span<const std::uint8_t> gray, const Pictu
       values[i] = static_cast<float>(std::floor(std::min(level, 255.0)) / kByteScale);
     }
     WriteShares(values.first(sums.size()), values.subspan(sums.size(), sums.size()));
-    WriteSmallGray(picture, values.subspan(2 * sums.size(), kGrayRows * kGrayColumns * kCells));
+    WriteSmallGray(picture, values.subspan(2 * sums.size()));
   } catch (const cv::Exception& e) {
     return Fail(ErrorCode::kInternal, "measuring edges of {}x{} px failed: {}", size.width,
                 size.height, e.what());

@@ -121,12 +121,12 @@ cv::Mat Repeat(const cv::Mat& one, int batch) {
 
 class OpenCvDnnDenoiser final : public Denoiser {
  public:
-  OpenCvDnnDenoiser(const ModelInfo& model, cv::dnn::Net encoder, std::vector<Piece> pieces)
+  OpenCvDnnDenoiser(const ModelInfo& model, const cv::dnn::Net& encoder, std::vector<Piece> pieces)
       : state_shape_(model.motion),
         condition_shape_(model.condition),
         diffusion_steps_(model.diffusion_steps),
         embedding_size_(model.time_embedding_size),
-        encoder_(std::move(encoder)),
+        encoder_(encoder),
         pieces_(std::move(pieces)) {}
 
   [[nodiscard]] Shape StateShape() const override { return state_shape_; }
@@ -269,20 +269,19 @@ Result<std::unique_ptr<Denoiser>> LoadOpenCvDnnDenoiser(const ModelInfo& model,
     return Propagate(device.error());
   }
   const QuietOpenCv quiet;
-  Result<cv::dnn::Net> encoder = LoadNet(model.encoder, *device);
+  const Result<cv::dnn::Net> encoder = LoadNet(model.encoder, *device);
   if (!encoder) {
     return Propagate(encoder.error());
   }
   std::vector<Piece> pieces;
   for (const WeightFile& weights : model.denoisers) {
-    Result<cv::dnn::Net> net = LoadNet(weights, *device);
+    const Result<cv::dnn::Net> net = LoadNet(weights, *device);
     if (!net) {
       return Propagate(net.error());
     }
-    pieces.push_back({weights.batch, std::move(*net), {}, {}});
+    pieces.push_back({weights.batch, *net, {}, {}});
   }
-  auto denoiser =
-      std::make_unique<OpenCvDnnDenoiser>(model, std::move(*encoder), std::move(pieces));
+  auto denoiser = std::make_unique<OpenCvDnnDenoiser>(model, *encoder, std::move(pieces));
   if (const Status status = TryOut(*denoiser, model.denoisers); !status) {
     return Fail(ErrorCode::kCorruptData,
                 "model {}: its networks do not have the shapes that the model file states: {}",
