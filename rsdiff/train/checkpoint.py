@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Networks by name, and the files that training writes and everything else reads.
 
-A checkpoint is a dict: `net` and `config` say which network; `model` and `ema` are its weights and
-their average; `step`, `optimizer`, `ema_step`, `scaler` are what resuming needs; `reference_row`
+A checkpoint is a dict: `net` and `config` say which network, `objective` what it was trained for;
+`model` and `ema` are its weights and their average; `step`, `optimizer`, `ema_step`, `scaler` are what resuming needs; `reference_row`
 says where the fields it learned are zero. Random numbers follow from (seed, step), see train.py.
 """
 
@@ -49,6 +49,7 @@ def load(path: Path) -> dict[str, Any]:
     """Tensors on the CPU; pickled code in the file is not executed."""
     state = load_plain(path)
     state.setdefault("net", "compact")
+    state.setdefault("objective", "diffusion")
     return state
 
 

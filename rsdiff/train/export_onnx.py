@@ -38,7 +38,7 @@ from rotation_curve import BANDS, SCALE
 
 BATCH_SIZES = (1, 8)
 OPSET = 11  # the newest that OpenCV 4.6 reads without gaps
-CLIP_RANGE = 12.0
+CLIP_RANGE = 12.0  # network units: the largest motions of training, not of life
 SAMPLING_STEPS = 4
 TOLERANCE = 1e-3  # largest difference from PyTorch, network units
 
@@ -145,6 +145,16 @@ class ExportDenoiser(nn.Module):
         return summed + self.direct(torch.cat([h, noisy], dim=1))
 
 
+def blind_to_noise(net: CompactNet) -> CompactNet:
+    """A network trained by regression, which saw zeros for the noisy state, for any state."""
+    net = copy.deepcopy(net)
+    width = net.config.denoiser_width
+    with torch.no_grad():
+        net.denoiser.enter[0].weight[:, :AXES] = 0.0
+        net.denoiser.direct.weight[:, width : width + AXES] = 0.0
+    return net
+
+
 def denoiser_inputs(net: CompactNet, batch: int) -> dict[str, torch.Tensor]:
     width = net.config.feature_width
     return {
@@ -221,7 +231,7 @@ def export(net: CompactNet) -> dict[str, bytes]:
     return files
 
 
-def model_description(files: dict[str, bytes], training: dict) -> dict:
+def model_description(files: dict[str, bytes], steps: int, training: dict) -> dict:
     """The model file; rsdiff/model_file.h says what each key means."""
 
     def weights(name: str) -> dict:
@@ -244,7 +254,7 @@ def model_description(files: dict[str, bytes], training: dict) -> dict:
             "scale": [round(float(s), 6) for s in SCALE],
         },
         "diffusion": {"steps": TIMESTEPS, "schedule": "linear", "objective": "x0"},
-        "sampling": {"steps": SAMPLING_STEPS, "eta": 0, "clip_range": CLIP_RANGE},
+        "sampling": {"steps": steps, "eta": 0, "clip_range": CLIP_RANGE},
         "time_embedding": {"size": TIME_CHANNELS},
         "weights": {
             "encoder": weights("encoder.onnx"),
@@ -254,11 +264,12 @@ def model_description(files: dict[str, bytes], training: dict) -> dict:
     }
 
 
-def write_model(folder: Path, files: dict[str, bytes], training: dict) -> None:
+def write_model(folder: Path, files: dict[str, bytes], steps: int, training: dict) -> None:
+    """steps: of the sampler, by default."""
     folder.mkdir(parents=True, exist_ok=True)
     for name, data in files.items():
         (folder / name).write_bytes(data)
-    description = model_description(files, training)
+    description = model_description(files, steps, training)
     (folder / "model.json").write_text(json.dumps(description, indent=2) + "\n")
 
 
@@ -266,14 +277,22 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("checkpoint", type=Path)
     parser.add_argument("-o", "--output", type=Path, required=True, help="folder of the model")
+    parser.add_argument("--regression", action="store_true",
+                        help="it was trained by regression (checkpoints of train.py say so)")
     parser.add_argument("--time", type=int, default=0, metavar="RUNS", help="time OpenCV as well")
     args = parser.parse_args()
     torch.manual_seed(1)
     net, state = load_averaged(args.checkpoint)
     if state["net"] != "compact":
         raise SystemExit(f"{args.checkpoint}: is of the {state['net']} network, not compact")
-    files = export(net)
-    write_model(args.output, files, {"step": state["step"], "config": state["config"]})
+    regression = args.regression or state["objective"] == "regression"
+    files = export(blind_to_noise(net) if regression else net)
+    training = {
+        "step": state["step"],
+        "objective": "regression" if regression else state["objective"],
+        "config": state["config"],
+    }
+    write_model(args.output, files, 1 if regression else SAMPLING_STEPS, training)
     print(f"{args.output}: {sum(map(len, files.values())) / 1e6:.2f} MB")
     for name, data in files.items() if args.time else ():
         batch = int(name.split("_")[1][:-5]) if "_" in name else 0

@@ -145,17 +145,21 @@ def fit_residuals(files: list[Path]) -> tuple[np.ndarray, np.ndarray]:
     return np.array(sizes), np.array(residuals)
 
 
+def fit_report(files: list[Path], look_at: int = 50) -> str:
+    """How well curves describe the fields, from some files evenly spread."""
+    sizes, residuals = fit_residuals(files[:: max(1, len(files) // look_at)])
+    return (
+        f"RS-Real: {len(files)} files; fields of {sizes.mean():.2f} px RMS, of which rotation "
+        f"curves leave {residuals.mean():.3f} px (worst {residuals.max():.3f})"
+    )
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--files", type=int, default=200, help="look at this many, evenly spread")
+    parser.add_argument("--files", type=int, default=200, help="look at about this many")
     args = parser.parse_args()
-    files = rs_real_files(args.folder)
-    sizes, residuals = fit_residuals(files[:: max(1, len(files) // args.files)])
-    print(
-        f"{len(files)} files; fields of {sizes.mean():.2f} px RMS, of which rotation curves leave "
-        f"{residuals.mean():.3f} (median {np.median(residuals):.3f}, worst {residuals.max():.3f})"
-    )
+    print(fit_report(rs_real_files(args.folder), args.files))
 
 
 if __name__ == "__main__":

@@ -38,6 +38,7 @@ from ema import Ema
 from learners import Losses, make_learner
 from losses import WEIGHTS, LossOptions
 from run_log import CsvLog, Progress
+from rs_real import fit_report, rs_real_files
 from sample_pool import SamplePool
 from samples import SampleSource
 
@@ -190,6 +191,8 @@ class Trainer:
         state = checkpoint.load(self.path)
         if (state["net"], state["config"]) != (self.net_name, checkpoint.config_of(self.net)):
             raise SystemExit(f"{self.path}: is of another network than the options name")
+        if state["objective"] != self.options.objective:
+            raise SystemExit(f"{self.path}: was trained for {state['objective']}")
         self.net.load_state_dict(state["model"])
         self.optimizer.load_state_dict(state["optimizer"])
         self.ema.load(state["ema"], state["ema_step"])
@@ -201,6 +204,7 @@ class Trainer:
         checkpoint.save(self.path, {
             "net": self.net_name,
             "config": checkpoint.config_of(self.net),
+            "objective": self.options.objective,
             "reference_row": "middle" if self.options.rs_real is None else "first",
             "model": self.net.state_dict(),
             "optimizer": self.optimizer.state_dict(),
@@ -227,6 +231,8 @@ class Trainer:
         size = sum(p.numel() for p in self.net.parameters()) / 1e6
         if place.is_first:
             progress.report(f"{self.net_name}: {size:.2f} M parameters, from step {self.step}")
+            if options.rs_real is not None and options.net == "compact":
+                progress.report(fit_report(rs_real_files(options.rs_real)))
         data = training_batches(options, place)
         parallel = place.parallel(self.learner, some_unused=self.net_name == "reference")
         self.learner.train()

@@ -63,11 +63,21 @@ class Export(unittest.TestCase):
             })
             loaded, state = checkpoint.load_averaged(folder / "checkpoint.pt")
             files = export_onnx.export(loaded)
-            export_onnx.write_model(folder / "model", files, {"step": state["step"]})
+            export_onnx.write_model(folder / "model", files, 4, {"step": state["step"]})
             model = json.loads((folder / "model" / "model.json").read_text())
             entries = [model["weights"]["encoder"], *model["weights"]["denoiser"]]
             self.assertEqual([e.get("batch") for e in entries], [None, 1, 8])
             for entry in entries:
                 data = (folder / "model" / entry["file"]).read_bytes()
                 self.assertEqual(hashlib.sha256(data).hexdigest(), entry["sha256"])
-            self.assertEqual(model["training"]["step"], 12)
+            self.assertEqual((model["training"]["step"], model["sampling"]["steps"]), (12, 4))
+
+    def test_regression_takes_any_noise_for_none(self):
+        net = lively_net(CompactConfig())
+        inputs = export_onnx.denoiser_inputs(net, 1)
+        blind = export_onnx.blind_to_noise(net)
+        with torch.no_grad():
+            expected = net.denoiser(torch.zeros_like(inputs["x"]), inputs["time"],
+                                    inputs["features"])
+            self.assertGreater(float((net.denoiser(*inputs.values()) - expected).abs().max()), 0.1)
+            torch.testing.assert_close(blind.denoiser(*inputs.values()), expected)

@@ -8,7 +8,15 @@ from pathlib import Path
 import numpy as np
 
 from rotation_curve import BANDS, RotationCurve, band_times, row_homographies
-from rs_real import RsReal, correct, fit_curve, fit_residuals, read_pair, rs_real_files
+from rs_real import (
+    RsReal,
+    correct,
+    fit_curve,
+    fit_report,
+    fit_residuals,
+    read_pair,
+    rs_real_files,
+)
 
 WIDTH, HEIGHT, FOCAL = 320, 240, 400.0
 # Second-order terms of the rotations, and what a value per band leaves of a bent curve.
@@ -82,6 +90,7 @@ class Reader(unittest.TestCase):
             np.testing.assert_array_equal(small["rs"], small["gs"][:, :, ::-1])
             sizes, residuals = fit_residuals(files)
             self.assertGreater(sizes[0], 10 * residuals[0])
+            self.assertIn("1 files", fit_report(files))
 
     def test_says_what_is_wrong(self):
         with tempfile.TemporaryDirectory() as name:
