@@ -186,6 +186,7 @@ void ReadDiffusion(const Fields& root, ModelInfo& info) {
   info.sampling.guidance = sampling.Number("guidance", 0.0, 100.0, plain.guidance);
   info.sampling.guidance_rescale =
       sampling.Number("guidance_rescale", 0.0, 1.0, plain.guidance_rescale);
+  info.spread_scale = sampling.Number("spread_scale", 0.01, 100.0, info.spread_scale);
 }
 
 WeightFile ReadWeight(const Fields& fields, const std::filesystem::path& folder) {

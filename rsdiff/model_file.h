@@ -46,8 +46,8 @@ struct WeightFile {
 //    "diffusion": {"steps": 1000, "schedule": "linear", "objective": "x0"},
 //                                             schedule "linear", "cosine"; objective "x0", "noise",
 //                                             "v"
-//    "sampling": {"steps": 4, "eta": 0, "clip_range": 1, "guidance": 1, "guidance_rescale": 0},
-//                                             all but "steps" optional
+//    "sampling": {"steps": 4, "eta": 0, "clip_range": 1, "guidance": 1, "guidance_rescale": 0,
+//                 "spread_scale": 1},         all but "steps" optional
 //    "time_embedding": {"size": 16},          opencv-dnn only, see time_embedding.h
 //    "weights": {"encoder": {"file": "encoder.onnx", "sha256": "..."},
 //                "denoiser": [{"file": "denoiser_1.onnx", "sha256": "...", "batch": 1},
@@ -70,7 +70,10 @@ struct ModelInfo {
   ScheduleKind schedule = ScheduleKind::kLinear;
   int diffusion_steps = 1000;
   Objective objective = Objective::kX0;
-  DdimOptions sampling;               // the defaults of this model
+  DdimOptions sampling;  // the defaults of this model
+  // Samples' distance from their mean is multiplied by it: few steps draw them too close together,
+  // and by how much is measured when the model is made.
+  double spread_scale = 1.0;
   int time_embedding_size = 0;        // opencv-dnn
   WeightFile encoder;                 // opencv-dnn
   std::vector<WeightFile> denoisers;  // opencv-dnn, ascending batch size, at least one

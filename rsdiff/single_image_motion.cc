@@ -49,6 +49,24 @@ Status CheckOptions(const SamplingOptions& options) {
   return {};
 }
 
+// Multiplies every sample's distance from their mean. A single sample stays where it is.
+void SpreadOut(double scale, Tensor& samples) {
+  if (scale == 1.0 || samples.batch < 2) {
+    return;
+  }
+  const std::size_t size = samples.shape.Count();
+  for (std::size_t i = 0; i < size; ++i) {
+    double mean = 0.0;
+    for (int s = 0; s < samples.batch; ++s) {
+      mean += static_cast<double>(samples.Item(s)[i]) / samples.batch;
+    }
+    for (int s = 0; s < samples.batch; ++s) {
+      float& value = samples.Item(s)[i];
+      value = static_cast<float>(mean + scale * (static_cast<double>(value) - mean));
+    }
+  }
+}
+
 // The curve, zero at the middle row.
 RotationCurve Centred(RotationCurve curve, int height) {
   const Eigen::Vector3d middle = CurveAtRow(curve, (height - 1) / 2.0, height);
@@ -197,11 +215,12 @@ Result<SingleImageMotion> SingleImageEstimator::Estimate(const FrameView& image,
   SeededNoise noise(options.seed, options.samples);
   Tensor states(options.samples, model.motion);
   noise.Fill(states);
-  const auto sampled = impl_->sampler.Sample(
-      *impl_->denoiser, WithDefaults(options, model.sampling), std::move(states), noise);
+  auto sampled = impl_->sampler.Sample(*impl_->denoiser, WithDefaults(options, model.sampling),
+                                       std::move(states), noise);
   if (!sampled) {
     return Propagate(sampled.error());
   }
+  SpreadOut(model.spread_scale, *sampled);
   SingleImageMotion motion;
   std::vector<MotionField> fields;
   for (int i = 0; i < sampled->batch; ++i) {

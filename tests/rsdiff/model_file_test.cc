@@ -60,6 +60,7 @@ TEST(ReadModelFile, ReadsACompactModelFromItsFolderOrItsFile) {
     EXPECT_EQ(info->sampling.clip_range, 4.0);
     EXPECT_EQ(info->sampling.guidance, 1.5);
     EXPECT_EQ(info->sampling.guidance_rescale, 0.25);
+    EXPECT_EQ(info->spread_scale, 1.75);
     EXPECT_EQ(info->time_embedding_size, 4);
     EXPECT_EQ(info->encoder.path, TinyModel() / "encoder.onnx");
     ASSERT_EQ(info->denoisers.size(), 2U);
@@ -132,6 +133,7 @@ TEST(ReadModelFile, RefusesDamageAndSaysWhere) {
       {"/sampling/steps", 1001, ErrorCode::kCorruptData, "sampling.steps"},
       {"/sampling/eta", 1.5, ErrorCode::kCorruptData, "sampling.eta"},
       {"/sampling/clip_range", 0.0, ErrorCode::kCorruptData, "clip_range"},
+      {"/sampling/spread_scale", 0.0, ErrorCode::kCorruptData, "spread_scale"},
       {"/sampling/guidance", "much", ErrorCode::kCorruptData, "guidance"},
       {"/time_embedding/size", 3, ErrorCode::kCorruptData, "even"},
       {"/weights", nullptr, ErrorCode::kCorruptData, "weights"},

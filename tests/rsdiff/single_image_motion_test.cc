@@ -147,6 +147,26 @@ TEST(SingleImageEstimator, TellsMeanAndSpread) {
   EXPECT_LT(motion.spread_px, 3.0 * std::hypot(0.04, 0.05) * kDeviation * 400.0);
 }
 
+// What the model file says of its sampler widens the samples about the same mean.
+TEST(SingleImageEstimator, SpreadsSamplesAsTheModelSays) {
+  constexpr double kSpreadScale = 1.75;
+  ModelInfo model = CurveModel();
+  model.sampling.steps = 4;
+  model.spread_scale = kSpreadScale;
+  SingleImageEstimator wide =
+      *SingleImageEstimator::Create(model, PerfectDenoiser(model, MeanState(), kDeviation));
+  model.spread_scale = 1.0;
+  SingleImageEstimator plain =
+      *SingleImageEstimator::Create(model, PerfectDenoiser(model, MeanState(), kDeviation));
+  const Frame picture = Picture(160, 120);
+  const auto a = wide.Estimate(picture.View());
+  const auto b = plain.Estimate(picture.View());
+  ASSERT_TRUE(a && b);
+  EXPECT_LT((a->curve_mean.front() - b->curve_mean.front()).norm(), 1e-6);
+  EXPECT_LT((a->curve_deviation.front() - kSpreadScale * b->curve_deviation.front()).norm(), 1e-6);
+  EXPECT_GT(b->curve_deviation.front().minCoeff(), 0.0);
+}
+
 TEST(SingleImageEstimator, OneSampleSaysNothingOfItsError) {
   SingleImageEstimator estimator = CurveEstimator();
   SamplingOptions options;
