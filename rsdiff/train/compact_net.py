@@ -29,6 +29,8 @@ CONDITION_CHANNELS = 2 * planes_module.PLANES + GRAY_CHANNELS + 1
 
 @dataclass
 class CompactConfig:
+    """Sizes of the network, and what its ablations leave out."""
+
     width: int = 40  # channels at full grid
     deep_width: int = 64  # channels after the columns were halved
     feature_width: int = 96
@@ -59,6 +61,8 @@ def _conv(inside: int, outside: int, kernel=1, stride=1, padding=0) -> nn.Sequen
 
 
 class ResidualBlock(nn.Module):
+    """Two 3x3 convolutions around which the input passes."""
+
     def __init__(self, width: int):
         super().__init__()
         self.first = _conv(width, width, 3, 1, 1)
@@ -79,12 +83,11 @@ class GridAttention(nn.Module):
         self.out = _conv(width, width)
 
     def forward(self, x: torch.Tensor) -> torch.Tensor:
-        groups, tokens = self.heads * self.rows, self.columns
+        tokens = self.rows if self.along_rows else self.columns
         qkv = self.query_key_value(x)
-        if self.along_rows:
-            groups, tokens = self.heads * self.columns, self.rows
-        # N x (3 heads) x depth x rows x columns -> (N groups) x tokens x depth
+
         def tokens_of(part: torch.Tensor) -> torch.Tensor:
+            """N x (heads depth) x rows x columns -> (N heads other side) x tokens x depth."""
             if self.columns == 1:
                 return part.reshape(-1, self.depth, tokens).transpose(1, 2)
             part = part.reshape(-1, self.depth, self.rows, self.columns)
@@ -98,8 +101,8 @@ class GridAttention(nn.Module):
         if self.columns == 1:
             mixed = mixed.transpose(1, 2).reshape(-1, width, tokens, 1)
         else:
-            shape = (-1, self.columns, self.rows, self.depth) if self.along_rows else (
-                -1, self.rows, self.columns, self.depth)
+            sides = (self.columns, self.rows) if self.along_rows else (self.rows, self.columns)
+            shape = (-1, *sides, self.depth)
             order = (0, 3, 2, 1) if self.along_rows else (0, 3, 1, 2)
             mixed = mixed.reshape(*shape).permute(*order)
             mixed = mixed.reshape(-1, width, self.rows, self.columns)
@@ -129,6 +132,8 @@ def band_mixers(count: int, width: int, config: CompactConfig) -> nn.Sequential:
 
 
 class Encoder(nn.Module):
+    """From a picture's condition to one vector of features per band."""
+
     def __init__(self, config: CompactConfig):
         super().__init__()
         self.config = config
@@ -189,6 +194,8 @@ class Denoiser(nn.Module):
 
 
 class CompactNet(nn.Module):
+    """Both halves; the key names of its state dict are those of the shipped checkpoints."""
+
     def __init__(self, config: CompactConfig | None = None):
         super().__init__()
         self.config = config or CompactConfig()
@@ -196,9 +203,13 @@ class CompactNet(nn.Module):
         self.denoiser = Denoiser(self.config)
 
     def encode(self, condition: torch.Tensor) -> torch.Tensor:
+        """As Encoder."""
         return self.encoder(condition)
 
-    def denoise(self, x: torch.Tensor, t: torch.Tensor, features: torch.Tensor, total: int):
+    def denoise(
+        self, x: torch.Tensor, t: torch.Tensor, features: torch.Tensor, total: int
+    ) -> torch.Tensor:
+        """As Denoiser, for times t (N integers) of `total`."""
         time = time_features(t, total)[:, :, None, None].expand(-1, -1, BANDS, 1)
         return self.denoiser(x, time, features)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import torch
@@ -44,7 +45,7 @@ class Place:
 
 
 @contextlib.contextmanager
-def place():
+def place() -> Iterator[Place]:
     """Joins the processes of a torchrun launch, if this is one."""
     world = int(os.environ.get("WORLD_SIZE", "1"))
     cuda = torch.cuda.is_available()
@@ -76,7 +77,8 @@ class MixedPrecision:
         else:  # torch before 2.3
             self.scaler = torch.cuda.amp.GradScaler(enabled=scales)
 
-    def forward(self):
+    def forward(self) -> contextlib.AbstractContextManager:
+        """What the forward pass runs in."""
         enabled = self.dtype != torch.float32
         # The CPU's autocast of torch 1.13 refuses float32 even when it is off.
         dtype = self.dtype if enabled else torch.bfloat16

@@ -14,6 +14,7 @@ from __future__ import annotations
 import argparse
 import copy
 import hashlib
+import inspect
 import io
 import json
 import time
@@ -171,7 +172,9 @@ def encoder_inputs() -> dict[str, torch.Tensor]:
 
 def onnx_bytes(module: nn.Module, inputs: dict[str, torch.Tensor], output: str) -> bytes:
     stream = io.BytesIO()
-    options = {"dynamo": False} if torch.__version__ >= "2.5" else {}
+    # Newer exporters write operators that OpenCV 4.6 does not know.
+    has_choice = "dynamo" in inspect.signature(torch.onnx.export).parameters
+    options = {"dynamo": False} if has_choice else {}
     torch.onnx.export(
         module.eval(), tuple(inputs.values()), stream, opset_version=OPSET,
         input_names=list(inputs), output_names=[output], do_constant_folding=True, **options,

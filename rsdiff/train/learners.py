@@ -139,7 +139,8 @@ class CompactLearner(MotionLearner):
         )
         return [self.net.encode(condition)]
 
-    def denoise(self, noisy, t, context, seen):
+    def denoise(self, noisy: torch.Tensor, t: torch.Tensor, context: list[torch.Tensor],
+                seen: torch.Tensor) -> torch.Tensor:
         return self.net.denoise(noisy, t, context[0] * seen[:, None, None, None], TIMESTEPS)
 
     def photometric(self, motion: torch.Tensor, batch: Batch) -> torch.Tensor:
@@ -182,7 +183,8 @@ class ReferenceLearner(MotionLearner):
     def encode(self, batch: Batch) -> list[torch.Tensor]:
         return self.net.model.encode(batch["rs"].float() / 127.5 - 1.0)
 
-    def denoise(self, noisy, t, context, seen):
+    def denoise(self, noisy: torch.Tensor, t: torch.Tensor, context: list[torch.Tensor],
+                seen: torch.Tensor) -> torch.Tensor:
         return self.net.model.denoise(noisy, t, context, ~seen)
 
     @staticmethod
