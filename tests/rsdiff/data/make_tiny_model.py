@@ -91,7 +91,8 @@ def main() -> None:
             "eta": 0.5,
             "clip_range": 4,
             "guidance": 1.5,
-            "guidance_rescale": 0.25, "spread_scale": 1.75,
+            "guidance_rescale": 0.25,
+            "spread_scale": 1.75,
         },
         "time_embedding": {"size": TIME},
         "weights": {
