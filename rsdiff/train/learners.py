@@ -17,7 +17,7 @@ from compact_net import CompactNet, condition_tensor
 from data_source import Batch, mirrored
 from diffusion import NoiseSchedule
 from image_net import ImageNet
-from losses import LossOptions, balanced, size_weight, state_loss, time_weight
+from losses import LossOptions, balanced, curve_loss, size_weight, state_loss, time_weight
 from metrics import field_errors, picture_figures
 from motion_field import curve_warp_field, first_order_field, photometric_loss, warp
 from reference_net import ReferenceDiffusion
@@ -57,6 +57,10 @@ class MotionLearner(nn.Module):
         """`seen`: N booleans, whether the picture may be looked at."""
         raise NotImplementedError
 
+    def compare(self, out: torch.Tensor, truth: torch.Tensor, weight: torch.Tensor) -> torch.Tensor:
+        """The loss of predicted motions, as one number."""
+        return state_loss(out, truth, weight)
+
     def photometric(self, motion: torch.Tensor, batch: Batch) -> torch.Tensor:
         raise NotImplementedError
 
@@ -83,7 +87,7 @@ class MotionLearner(nn.Module):
     def _regress(self, truth: torch.Tensor, context: list[torch.Tensor]) -> Losses:
         clean = self._from_nothing(torch.zeros_like(truth), context)
         weight = size_weight(truth, self.options.large)
-        return {"motion": state_loss(clean, truth, weight), "clean": clean}
+        return {"motion": self.compare(clean, truth, weight), "clean": clean}
 
     def _diffuse(self, truth: torch.Tensor, context: list[torch.Tensor]) -> Losses:
         """With several draws per picture the first one is late in time and sees the picture."""
@@ -99,7 +103,7 @@ class MotionLearner(nn.Module):
         context = [c.repeat(draws, 1, 1, 1) for c in context]
         clean = self.denoise(noisy, t, context, seen).float()
         weight = self.weights[t] * size_weight(truth, self.options.large)
-        return {"motion": state_loss(clean, truth, weight), "clean": clean[:count]}
+        return {"motion": self.compare(clean, truth, weight), "clean": clean[:count]}
 
     def _from_nothing(self, start: torch.Tensor, context: list[torch.Tensor]) -> torch.Tensor:
         t = torch.full((len(start),), TIMESTEPS - 1, device=start.device)
@@ -142,6 +146,11 @@ class CompactLearner(MotionLearner):
     def denoise(self, noisy: torch.Tensor, t: torch.Tensor, context: list[torch.Tensor],
                 seen: torch.Tensor) -> torch.Tensor:
         return self.net.denoise(noisy, t, context[0] * seen[:, None, None, None], TIMESTEPS)
+
+    def compare(self, out: torch.Tensor, truth: torch.Tensor, weight: torch.Tensor) -> torch.Tensor:
+        if self.options.slope_share == 0.0:
+            return super().compare(out, truth, weight)
+        return curve_loss(out, truth, weight, self.options.slope_share)
 
     def photometric(self, motion: torch.Tensor, batch: Batch) -> torch.Tensor:
         return photometric_loss(*_small_pictures(batch), _curve_field(motion, batch))

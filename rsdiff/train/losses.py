@@ -9,6 +9,9 @@ import torch
 
 WEIGHTS = ("snr", "clipped", "none")
 CLIPPED_SNR = (1.0, 5.0)
+# Of yaw, pitch and roll in a curve's error: pitch hardly shows in a picture, and what cannot be
+# learned is noise in the gradient of what can.
+AXIS_WEIGHTS = (1.0, 0.4, 0.7)
 
 
 @dataclass(frozen=True)
@@ -19,6 +22,7 @@ class LossOptions:
     large: float = 0.0  # motions of more network units (RMS) count less, 0 = all alike
     draws: int = 4  # noisy states per picture: the encoder is dear, the denoiser cheap
     regression: bool = False
+    slope_share: float = 0.0  # of the error's slope along a curve; 0 = dense fields, plain errors
 
 
 def time_weight(alphas_cumprod: torch.Tensor, kind: str) -> torch.Tensor:
@@ -45,6 +49,21 @@ def size_weight(truth: torch.Tensor, large: float) -> torch.Tensor:
 def state_loss(out: torch.Tensor, truth: torch.Tensor, weight: torch.Tensor) -> torch.Tensor:
     """Mean over the samples of weight times mean squared error."""
     return ((out - truth) ** 2).flatten(1).mean(dim=1).mul(weight).mean()
+
+
+def curve_loss(
+    out: torch.Tensor, truth: torch.Tensor, weight: torch.Tensor, slope_share: float
+) -> torch.Tensor:
+    """As state_loss for curves N x 3 x bands x 1, of their values and of their slopes.
+
+    Slopes (per readout, times slope_share) are what leaning lines show, band by band; the value at
+    a band sums the errors of many. Both are least at the mean of what the picture leaves possible.
+    """
+    error = out - truth
+    slope = torch.diff(error, dim=2) * (error.shape[2] * slope_share)
+    axes = error.new_tensor(AXIS_WEIGHTS)[:, None, None]
+    parts = [(axes * part.square()).flatten(1).mean(dim=1) for part in (error, slope)]
+    return (parts[0] + parts[1]).mul(weight).mean()
 
 
 def balanced(first: torch.Tensor, second: torch.Tensor) -> torch.Tensor:

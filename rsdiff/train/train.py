@@ -51,10 +51,10 @@ PATCH_ATTENTION = {"none": (False, False), "intra": (True, False), "both": (True
 DEFAULTS = {
     "compact": dict(steps=20_000, batch=128, lr=1e-3, lr_schedule="cosine", weight_decay=1e-3,
                     ema=0.999, draws=4, weight="clipped", photometric=False, large=1.0,
-                    largest_gradient=16.0),
+                    slope_share=0.1, largest_gradient=16.0),
     "reference": dict(steps=150_000, batch=64, lr=1e-4, lr_schedule="constant", weight_decay=0.0,
                       ema=0.995, draws=1, weight="snr", photometric=True, large=0.0,
-                      largest_gradient=1.0),
+                      slope_share=0.0, largest_gradient=1.0),
 }
 
 
@@ -84,6 +84,8 @@ def make_parser() -> argparse.ArgumentParser:
     loss.add_argument("--drop-condition", type=float, default=0.1)
     loss.add_argument("--draws", type=int, help="noisy states per picture")
     loss.add_argument("--large", type=float, help="RMS network units from which motions count less")
+    loss.add_argument("--slope-share", type=float,
+                      help="weight of a curve's slopes beside its values; 0: squared error only")
     pace = parser.add_argument_group("optimisation")
     pace.add_argument("--steps", type=int)
     pace.add_argument("--batch", type=int, help="samples a step, shared by all processes")
@@ -174,7 +176,7 @@ class Trainer:
         self.net = net.to(place.device)
         loss = LossOptions(
             options.weight, options.photometric, options.drop_condition, options.large,
-            options.draws, options.objective == "regression",
+            options.draws, options.objective == "regression", options.slope_share,
         )
         self.learner = make_learner(self.net, loss).to(place.device)
         self.optimizer = torch.optim.AdamW(

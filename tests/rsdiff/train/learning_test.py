@@ -13,7 +13,7 @@ from diffusion import NoiseSchedule
 from ema import Ema
 from image_net import ImageNet
 from learners import CompactLearner, ImageLearner, ReferenceLearner
-from losses import LossOptions, balanced, size_weight, state_loss, time_weight
+from losses import LossOptions, balanced, curve_loss, size_weight, state_loss, time_weight
 from reference_net import ReferenceDiffusion, ReferenceUNet
 from rotation_curve import BANDS, SCALE
 from samples import KINDS
@@ -61,6 +61,19 @@ class Losses(unittest.TestCase):
     def test_weighted_mean_square(self):
         out, truth = torch.tensor([[[2.0]], [[0.0]]]), torch.tensor([[[0.0]], [[1.0]]])
         self.assertEqual(float(state_loss(out, truth, torch.tensor([1.0, 10.0]))), 7.0)
+
+    def test_a_curve_is_judged_by_its_values_and_slopes(self) -> None:
+        truth = torch.zeros(1, 3, 4, 1)
+        out = torch.zeros(1, 3, 4, 1)
+        out[0, 0, :, 0] = torch.tensor([0.0, 1.0, 2.0, 3.0])  # yaw: slope 4 per readout
+        one = torch.ones(1)
+        values = (1.0 + 4.0 + 9.0) / 12
+        self.assertAlmostEqual(float(curve_loss(out, truth, one, 0.0)), values, places=6)
+        self.assertAlmostEqual(
+            float(curve_loss(out, truth, one, 0.5)), values + (0.5 * 4) ** 2 / 3, places=6
+        )
+        pitch = out[:, [1, 0, 2]]
+        self.assertAlmostEqual(float(curve_loss(pitch, truth, one, 0.0)), 0.4 * values, places=6)
 
     def test_huge_motions_count_less(self):
         truth = torch.stack([torch.zeros(3, 4, 1), torch.ones(3, 4, 1), 3 * torch.ones(3, 4, 1)])
