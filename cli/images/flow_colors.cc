@@ -44,8 +44,8 @@ std::vector<Color> MakeWheel() {
 // `displacement` in units of the longest one.
 Color ColorOf(const std::vector<Color>& wheel, const Eigen::Vector2d& displacement) {
   const double turn = std::atan2(-displacement.y(), -displacement.x()) / std::numbers::pi;
-  const double place = 0.5 * (turn + 1.0) * static_cast<double>(wheel.size() - 1);
-  const auto index = static_cast<std::size_t>(place);
+  const double place = 0.5 * (turn + 1.0) * static_cast<double>(wheel.size());
+  const std::size_t index = static_cast<std::size_t>(place) % wheel.size();
   const auto share = static_cast<float>(place - std::floor(place));
   const Color hue = wheel[index] + share * (wheel[(index + 1) % wheel.size()] - wheel[index]);
   const auto length = static_cast<float>(std::min(displacement.norm(), 1.0));

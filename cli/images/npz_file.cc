@@ -33,8 +33,9 @@ std::string NpyHeader(const std::vector<std::size_t>& shape) {
   static_assert(std::endian::native == std::endian::little);
   std::string sizes;
   for (const std::size_t size : shape) {
-    sizes += std::to_string(size) + ", ";
+    sizes += (sizes.empty() ? "" : ", ") + std::to_string(size);
   }
+  sizes += shape.size() == 1 ? "," : "";  // else Python takes the brackets for arithmetic
   std::string dictionary = "{'descr': '<f4', 'fortran_order': False, 'shape': (" + sizes + "), }";
   constexpr std::size_t kPrefix = 10;
   constexpr std::size_t kAlignment = 64;

@@ -5,7 +5,9 @@
 #include <array>
 #include <cctype>
 #include <filesystem>
+#include <iostream>
 #include <memory>
+#include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string_view>
@@ -79,8 +81,69 @@ void SwapRedAndBlue(const cv::Mat& from, cv::Mat& to) {
   }
 }
 
+// OpenCV prints its own words about damaged files; while this lives, it does not.
+class QuietOpenCv {
+ public:
+  QuietOpenCv()
+      : buffer_(std::cerr.rdbuf(nullptr)),
+        level_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
+  QuietOpenCv(const QuietOpenCv&) = delete;
+  QuietOpenCv& operator=(const QuietOpenCv&) = delete;
+  ~QuietOpenCv() {
+    cv::utils::logging::setLogLevel(level_);
+    std::cerr.rdbuf(buffer_);
+    std::cerr.clear();
+  }
+
+ private:
+  std::streambuf* buffer_;
+  cv::utils::logging::LogLevel level_;
+};
+
+// True for a JPEG file that ends before its end marker: libjpeg fills up with grey. `file` begins
+// with the marker of a JPEG image.
+bool IsCutOffJpeg(const Bytes& file) {
+  constexpr std::uint8_t kStartOfScan = 0xDA;
+  constexpr std::uint8_t kEnd = 0xD9;
+  std::size_t at = 2;
+  while (at + 3 < file.size()) {
+    const std::uint8_t marker = file[at + 1];
+    if (file[at] != 0xFF) {
+      return false;  // not what this knows to walk through: the decoder's word counts
+    }
+    if (marker == kEnd) {
+      return false;
+    }
+    if (marker == 0xFF) {  // filling
+      ++at;
+      continue;
+    }
+    at += 2 + (std::size_t{file[at + 2]} << 8U) + file[at + 3];
+    if (marker != kStartOfScan) {
+      continue;
+    }
+    // In a scan FF is followed by 00, or by a restart marker, or it ends the scan.
+    const auto ends_scan = [&file](std::size_t i) {
+      const std::uint8_t next = file[i + 1];
+      return file[i] == 0xFF && next != 0x00 && (next < 0xD0 || next > 0xD7);
+    };
+    while (at + 1 < file.size() && !ends_scan(at)) {
+      ++at;
+    }
+  }
+  return !(at + 1 < file.size() && file[at] == 0xFF && file[at + 1] == kEnd);
+}
+
+bool IsJpeg(const Bytes& file) {
+  return file.size() > 2 && file[0] == 0xFF && file[1] == 0xD8 && file[2] == 0xFF;
+}
+
 Result<cv::Mat> Decode(const std::string& path, const Bytes& file) {
+  if (IsJpeg(file) && IsCutOffJpeg(file)) {
+    return Fail(ErrorCode::kCorruptData, "{}: the file ends in the middle of the picture", path);
+  }
   cv::Mat stored;
+  const QuietOpenCv quiet;
   try {
     // "Unchanged" leaves depth, alpha and (but for TIFF) the orientation alone.
     stored = cv::imdecode(file, cv::IMREAD_UNCHANGED);
@@ -196,6 +259,7 @@ Result<EncodedPicture> EncodePicture(const std::string& path, const FrameView& p
     return Fail(ErrorCode::kInvalidArgument, "{}: this format holds no colours", path);
   }
   EncodedPicture encoded;
+  const QuietOpenCv quiet;
   try {
     const cv::Mat picture = FitToFormat(pixels, *format, encoded.losses);
     if (!cv::imencode(std::string(format->ending), picture, encoded.bytes,

@@ -6,6 +6,8 @@
 #include <exiv2/exiv2.hpp>
 #include <string_view>
 
+#include "cli/images/color_profile.h"
+
 namespace rsstab::images {
 namespace {
 
@@ -13,7 +15,8 @@ constexpr char kOrientationKey[] = "Exif.Image.Orientation";
 constexpr char kFocalKey[] = "Exif.Photo.FocalLengthIn35mmFilm";
 constexpr double kFilmDiagonal_mm = 43.266615;  // of 36 mm x 24 mm
 
-// A file in memory with its metadata read; Exiv2 throws when there is no such format.
+// A file in memory, which has to stay there, with its metadata read; Exiv2 throws when there is no
+// such format.
 Exiv2::Image::AutoPtr Open(const Bytes& file) {
   // Exiv2 would print what it finds odd.
   Exiv2::LogMsg::setLevel(Exiv2::LogMsg::mute);
@@ -50,7 +53,7 @@ bool ProfileFits(const Exiv2::DataBuf& profile, int channels) {
 }
 
 // What the format of `to` has no place for is left out.
-void CopyMetadata(Exiv2::Image& from, Exiv2::Image& to, int channels) {
+void CopyTags(Exiv2::Image& from, Exiv2::Image& to) {
   const auto holds = [&to](Exiv2::MetadataId kind) {
     return (to.checkMode(kind) & Exiv2::amWrite) != 0;
   };
@@ -67,10 +70,6 @@ void CopyMetadata(Exiv2::Image& from, Exiv2::Image& to, int channels) {
   }
   if (holds(Exiv2::mdComment) && !from.comment().empty()) {
     to.setComment(from.comment());
-  }
-  if (from.iccProfileDefined() && ProfileFits(*from.iccProfile(), channels)) {
-    Exiv2::DataBuf profile(from.iccProfile()->pData_, from.iccProfile()->size_);
-    to.setIccProfile(profile, false);
   }
 }
 
@@ -97,8 +96,9 @@ PictureFacts ReadFacts(const Bytes& file) {
   return facts;
 }
 
-Result<Bytes> WithoutOrientation(const Bytes& file) {
+Result<Bytes> WithoutOrientation(Bytes file) {
   try {
+    // Exiv2 writes TIFF in place where it can, that is into `file`.
     const auto image = Open(file);
     image->exifData()[kOrientationKey] = std::uint16_t{1};
     image->writeMetadata();
@@ -125,9 +125,24 @@ Result<Bytes> WithMetadataOf(const Bytes& original, Bytes encoded, int channels)
     return Fail(ErrorCode::kUnsupported, "this format holds no metadata");
   }
   try {
-    CopyMetadata(*from, *to, channels);
+    CopyTags(*from, *to);
+    const bool has_profile =
+        from->iccProfileDefined() && ProfileFits(*from->iccProfile(), channels);
+    const bool is_png = to->mimeType() == "image/png";
+    if (has_profile && !is_png) {
+      Exiv2::DataBuf profile(from->iccProfile()->pData_, from->iccProfile()->size_);
+      to->setIccProfile(profile, false);
+    }
     to->writeMetadata();
-    return Contents(*to);
+    Bytes complete = Contents(*to);
+    if (has_profile && is_png) {
+      const Exiv2::DataBuf& profile = *from->iccProfile();
+      InsertPngProfile({profile.pData_, static_cast<std::size_t>(profile.size_)}, complete);
+    }
+    if (to->mimeType() == "image/webp") {
+      RepairWebpProfile(complete);
+    }
+    return complete;
   } catch (const std::exception& error) {
     return Fail(ErrorCode::kCorruptData, "the metadata cannot be carried over: {}", error.what());
   }

@@ -26,7 +26,7 @@ struct PictureFacts {
 
 // The same file with the orientation set to 1, for decoders that turn the picture by themselves.
 // Errors: kCorruptData.
-[[nodiscard]] Result<Bytes> WithoutOrientation(const Bytes& file);
+[[nodiscard]] Result<Bytes> WithoutOrientation(Bytes file);
 
 // `encoded`, a picture file, with the EXIF, IPTC and XMP data, comment and colour profile of the
 // file `original`. Left out: the preview, which shows the picture as it was, and a colour profile
