@@ -16,7 +16,7 @@ namespace rsstab::pipeline {
 
 // How the rolling shutter of single pictures is taken out.
 struct ImageCorrectionOptions {
-  rsdiff::SamplingOptions sampling;
+  rsdiff::SamplingOptions sampling = {};
   double strength = 1.0;  // share of the estimated motion that is corrected, 0 .. 2
   // False: the picture is enlarged just so far that no border shows. True: its scale is kept, and
   // where nothing was recorded the edge goes on.

@@ -123,6 +123,11 @@ TEST(CliOptions, CommandsAreTheFirstWordOnly) {
   EXPECT_EQ(compare.compare.output, "b.mp4");
   EXPECT_EQ(compare.compare.truth, "folder");
   EXPECT_EQ(Parsed({"simulate", "folder", "--seed", "5"}).simulate.seed, 5);
+  const Invocation correct = Parsed({"correct", "a.jpg", "b*.png", "-o", "new", "--field", "f"});
+  EXPECT_EQ(correct.command, CommandId::kCorrect);
+  EXPECT_THAT(correct.correct.images, ::testing::ElementsAre("a.jpg", "b*.png"));
+  EXPECT_EQ(correct.correct.output, "new");
+  EXPECT_EQ(correct.correct.field_folder, "f");
   const Invocation clip = Parsed({"./analyze"});
   EXPECT_EQ(clip.command, CommandId::kStabilize);
   EXPECT_EQ(clip.input, "./analyze");
@@ -131,18 +136,23 @@ TEST(CliOptions, CommandsAreTheFirstWordOnly) {
 }
 
 TEST(CliOptions, WrongUsageIsExitCodeTwoAndOneSentence) {
-  const std::vector<std::vector<std::string>> wrong = {{},
-                                                       {"--no-such-option", "a.mp4"},
-                                                       {"a.mp4", "b.mp4"},
-                                                       {"a.mp4", "--crop", "2"},
-                                                       {"a.mp4", "--crop"},
-                                                       {"a.mp4", "--mesh", "16"},
-                                                       {"a.mp4", "--smoothness", "nan"},
-                                                       {"a.mp4", "--encoder-option", "noequals"},
-                                                       {"a.mp4", "--rs", "off", "--gyro", "g.csv"},
-                                                       {"render"},
-                                                       {"analyze", "a.mp4", "--crf", "18"},
-                                                       {"render", "a.mp4", "--smoothness", "1"}};
+  const std::vector<std::vector<std::string>> wrong = {
+      {},
+      {"--no-such-option", "a.mp4"},
+      {"a.mp4", "b.mp4"},
+      {"a.mp4", "--crop", "2"},
+      {"a.mp4", "--crop"},
+      {"a.mp4", "--mesh", "16"},
+      {"a.mp4", "--smoothness", "nan"},
+      {"a.mp4", "--encoder-option", "noequals"},
+      {"a.mp4", "--rs", "off", "--gyro", "g.csv"},
+      {"a.mp4", "--rs", "diffusion", "--gyro", "g"},
+      {"correct"},
+      {"correct", "a.jpg"},
+      {"correct", "a.jpg", "-o", "b", "--eta", "2"},
+      {"render"},
+      {"analyze", "a.mp4", "--crf", "18"},
+      {"render", "a.mp4", "--smoothness", "1"}};
   for (const auto& arguments : wrong) {
     const EarlyExit exit = Refused(arguments);
     EXPECT_EQ(exit.exit_code, kExitUsage);
@@ -178,7 +188,7 @@ TEST(CliOptions, ManualAndCompletionKnowTheOptions) {
   EXPECT_THAT(manual, StartsWith(".TH RS\\-STABILIZE 1"));
   EXPECT_THAT(manual, HasSubstr("\\-\\-gyro\\-offset S"));
   EXPECT_THAT(completion, HasSubstr("--gyro-offset"));
-  EXPECT_THAT(completion, HasSubstr("--rs) COMPREPLY=($(compgen -W \"auto gyro off\""));
+  EXPECT_THAT(completion, HasSubstr("--rs) COMPREPLY=($(compgen -W \"auto gyro diffusion off\""));
 }
 
 TEST(CliOptions, VersionIsOneLine) {

@@ -42,7 +42,10 @@ TEST(StabilizeOptions, TextSurvivesARoundTrip) {
       {"crop", "0.9"},          {"zoom", "1.25"},
       {"zoom", "fixed"},        {"zoom", "adaptive"},
       {"mesh", "8x12"},         {"interpolation", "lanczos"},
-      {"threads", "3"},         {"seed", "42"}};
+      {"threads", "3"},         {"seed", "42"},
+      {"rs", "diffusion"},      {"model", "m.json"},
+      {"samples", "3"},         {"steps", "5"},
+      {"rs-strength", "0.5"},   {"device", "opencl"}};
   for (const auto& [name, text] : values) {
     StabilizeOptions options;
     ASSERT_TRUE(Spec(name).set(options, text)) << name;
