@@ -27,6 +27,7 @@ from torch import nn
 from torch.nn.utils.fusion import fuse_conv_bn_eval
 
 import orientation_planes as planes_module
+from calibration import draw_samples, spread_scale, true_curves
 from checkpoint import TIMESTEPS, load_averaged
 from compact_net import (
     AXES,
@@ -35,12 +36,15 @@ from compact_net import (
     CompactNet,
     GridAttention,
 )
+from data_source import as_tensors
 from rotation_curve import BANDS, SCALE
+from sample_pool import SamplePool
 
 BATCH_SIZES = (1, 8)
 OPSET = 11  # the newest that OpenCV 4.6 reads without gaps
 CLIP_RANGE = 12.0  # network units: the largest motions of training, not of life
 SAMPLING_STEPS = 4
+SPREAD_SAMPLES = 16  # per picture, to measure their spread
 TOLERANCE = 1e-3  # largest difference from PyTorch, network units
 
 
@@ -234,7 +238,7 @@ def export(net: CompactNet) -> dict[str, bytes]:
     return files
 
 
-def model_description(files: dict[str, bytes], steps: int, training: dict) -> dict:
+def model_description(files: dict[str, bytes], sampling: dict, training: dict) -> dict:
     """The model file; rsdiff/model_file.h says what each key means."""
 
     def weights(name: str) -> dict:
@@ -257,7 +261,7 @@ def model_description(files: dict[str, bytes], steps: int, training: dict) -> di
             "scale": [round(float(s), 6) for s in SCALE],
         },
         "diffusion": {"steps": TIMESTEPS, "schedule": "linear", "objective": "x0"},
-        "sampling": {"steps": steps, "eta": 0, "clip_range": CLIP_RANGE},
+        "sampling": {"eta": 0, "clip_range": CLIP_RANGE, **sampling},
         "time_embedding": {"size": TIME_CHANNELS},
         "weights": {
             "encoder": weights("encoder.onnx"),
@@ -267,12 +271,21 @@ def model_description(files: dict[str, bytes], steps: int, training: dict) -> di
     }
 
 
-def write_model(folder: Path, files: dict[str, bytes], steps: int, training: dict) -> None:
-    """steps: of the sampler, by default."""
+def measured_spread(net: CompactNet, pool: Path, pictures: int) -> float:
+    """See calibration.py; tells what it found."""
+    batch = as_tensors(SamplePool(pool, "compact").head(pictures))
+    samples = draw_samples(net, batch, SPREAD_SAMPLES, SAMPLING_STEPS, CLIP_RANGE)
+    scale, covered = spread_scale(samples, true_curves(batch))
+    axes = ", ".join(f"{name} {share:.2f}" for name, share in zip("abr", covered))
+    print(f"spread scale {scale:.3f}: the truth lies in the central 80% at {axes}")
+    return scale
+
+
+def write_model(folder: Path, files: dict[str, bytes], sampling: dict, training: dict) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     for name, data in files.items():
         (folder / name).write_bytes(data)
-    description = model_description(files, steps, training)
+    description = model_description(files, sampling, training)
     (folder / "model.json").write_text(json.dumps(description, indent=2) + "\n")
 
 
@@ -282,6 +295,9 @@ def main() -> None:
     parser.add_argument("-o", "--output", type=Path, required=True, help="folder of the model")
     parser.add_argument("--regression", action="store_true",
                         help="it was trained by regression (checkpoints of train.py say so)")
+    parser.add_argument("--calibrate", type=Path, metavar="POOL",
+                        help="measure the samples' spread on a pool that was not trained on")
+    parser.add_argument("--pictures", type=int, default=1000, help="of that pool")
     parser.add_argument("--time", type=int, default=0, metavar="RUNS", help="time OpenCV as well")
     args = parser.parse_args()
     torch.manual_seed(1)
@@ -295,7 +311,11 @@ def main() -> None:
         "objective": "regression" if regression else state["objective"],
         "config": state["config"],
     }
-    write_model(args.output, files, 1 if regression else SAMPLING_STEPS, training)
+    sampling: dict[str, float] = {"steps": 1 if regression else SAMPLING_STEPS}
+    if args.calibrate is not None and not regression:
+        scale = measured_spread(net, args.calibrate, args.pictures)
+        sampling["spread_scale"] = round(scale, 3)
+    write_model(args.output, files, sampling, training)
     print(f"{args.output}: {sum(map(len, files.values())) / 1e6:.2f} MB")
     for name, data in files.items() if args.time else ():
         batch = int(name.split("_")[1][:-5]) if "_" in name else 0

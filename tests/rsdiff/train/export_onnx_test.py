@@ -12,7 +12,10 @@ from torch import nn
 
 import checkpoint
 import export_onnx
+from calibration import centred, draw_samples, spread_scale
 from compact_net import CompactConfig, CompactNet
+from learning_test import SMALL, batch_of
+from rotation_curve import BANDS
 
 
 def lively_net(config: CompactConfig) -> CompactNet:
@@ -30,6 +33,36 @@ def lively_net(config: CompactConfig) -> CompactNet:
         net.denoiser.position.normal_()
         net.denoiser.direct.weight.normal_(0, 0.1)
     return net.eval()
+
+
+class Calibration(unittest.TestCase):
+    def test_samples_of_the_truths_own_distribution_need_no_scale(self):
+        generator = torch.Generator().manual_seed(1)
+        truth = torch.randn(600, 3, BANDS, generator=generator)
+        samples = torch.randn(600, 16, 3, BANDS, generator=generator)
+        scale, covered = spread_scale(samples, truth)
+        # Straight lines between ordered samples lie a little outside the true quantiles.
+        self.assertAlmostEqual(scale, 1.0, delta=0.05)
+        for share in covered:
+            self.assertAlmostEqual(share, 0.8, delta=0.02)
+        scale, _ = spread_scale(0.25 * samples, truth)
+        # Less than 4: the mean of the wide samples was itself a quarter of a deviation off.
+        self.assertAlmostEqual(scale, 4.0 * (1 - 1 / 16) ** 0.5, delta=0.15)
+
+    def test_still_frames_do_not_count(self):
+        samples, truth = torch.randn(50, 16, 3, BANDS), torch.randn(50, 3, BANDS)
+        truth[25:] = 0.0
+        self.assertEqual(spread_scale(samples, truth)[0], spread_scale(samples[:25], truth[:25])[0])
+
+    def test_drawn_curves_are_zero_in_the_middle(self):
+        net = lively_net(SMALL)
+        batch = batch_of("compact", 3)
+        samples = draw_samples(net, batch, 4, 2, 12.0)
+        self.assertEqual(samples.shape, (3, 4, 3, BANDS))
+        torch.testing.assert_close(samples, draw_samples(net, batch, 4, 2, 12.0))
+        self.assertGreater(float(samples.std(dim=1).max()), 0.0)
+        cubic = 2 * torch.linspace(-1, 1, BANDS) ** 3 + 5.0  # odd about the middle, then raised
+        torch.testing.assert_close(centred(cubic), cubic - 5.0, atol=1e-5, rtol=0)
 
 
 class Export(unittest.TestCase):
@@ -63,7 +96,7 @@ class Export(unittest.TestCase):
             })
             loaded, state = checkpoint.load_averaged(folder / "checkpoint.pt")
             files = export_onnx.export(loaded)
-            export_onnx.write_model(folder / "model", files, 4, {"step": state["step"]})
+            export_onnx.write_model(folder / "model", files, {"steps": 4}, {"step": state["step"]})
             model = json.loads((folder / "model" / "model.json").read_text())
             entries = [model["weights"]["encoder"], *model["weights"]["denoiser"]]
             self.assertEqual([e.get("batch") for e in entries], [None, 1, 8])
