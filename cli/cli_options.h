@@ -8,6 +8,7 @@
 
 #include "cli/commands/compare_options.h"
 #include "cli/commands/correct_options.h"
+#include "cli/commands/evaluate_options.h"
 #include "cli/commands/simulate_options.h"
 #include "cli/encode_options.h"
 #include "cli/run_options.h"
@@ -20,7 +21,16 @@ inline constexpr int kExitDone = 0;
 inline constexpr int kExitFailed = 1;
 inline constexpr int kExitUsage = 2;
 
-enum class CommandId { kStabilize, kAnalyze, kRender, kCorrect, kInfo, kCompare, kSimulate };
+enum class CommandId {
+  kStabilize,
+  kAnalyze,
+  kRender,
+  kCorrect,
+  kInfo,
+  kCompare,
+  kSimulate,
+  kEvaluate
+};
 
 // A command line, understood: which command, and everything it was told. Fields that a command does
 // not take keep their defaults.
@@ -34,6 +44,7 @@ struct Invocation {
   CorrectOptions correct;
   CompareOptions compare;
   SimulateOptions simulate;
+  EvaluateOptions evaluate;
   RunOptions run;
 };
 

@@ -159,6 +159,17 @@ std::vector<CommandText> BuildTexts() {
        {{"rs-stabilize simulate walking --motion walking", "ten seconds of walking"},
         {"rs-stabilize simulate mine --image photo.jpg --motion vibration --readout 28",
          "from a photograph"}}},
+      {CommandId::kEvaluate,
+       "evaluate",
+       "[OPTIONS]",
+       "measures how well rolling shutter is taken out of single pictures",
+       "Records photographs along known camera motions, or takes real pictures with their "
+       "global-shutter truth, lets each method correct them, and prints how far each came; "
+       "docs/evaluation.md defines the protocols and figures.",
+       {{"rs-stabilize evaluate --photos holidays", "known motions, the default model"},
+        {"rs-stabilize evaluate --photos holidays --samples 16 --steps 8 --csv all.csv",
+         "other sampling, every picture's figures"},
+        {"rs-stabilize evaluate --protocol pairs --pairs Fastec", "real pictures"}}},
   };
 }
 
@@ -187,7 +198,7 @@ std::unique_ptr<CLI::App> MakeCommandApp(CommandId id, Invocation& invocation) {
     AddBothClips(*app, invocation);
   } else if (id == CommandId::kCorrect) {
     AddPictures(*app, invocation);
-  } else {
+  } else if (id != CommandId::kEvaluate) {
     AddInput(*app, invocation);
   }
   const auto& stabilize = pipeline::StabilizeOptionTable();
@@ -237,6 +248,10 @@ std::unique_ptr<CLI::App> MakeCommandApp(CommandId id, Invocation& invocation) {
       break;
     case CommandId::kSimulate:
       AddTable(*app, SimulateOptionTable(), invocation.simulate);
+      AddTable(*app, RunOptionTable(), invocation.run);
+      break;
+    case CommandId::kEvaluate:
+      AddTable(*app, EvaluateOptionTable(), invocation.evaluate);
       AddTable(*app, RunOptionTable(), invocation.run);
       break;
   }

@@ -13,6 +13,7 @@
 #include "cli/commands/analyze.h"
 #include "cli/commands/compare.h"
 #include "cli/commands/correct.h"
+#include "cli/commands/evaluate.h"
 #include "cli/commands/info.h"
 #include "cli/commands/render.h"
 #include "cli/commands/simulate.h"
@@ -54,16 +55,29 @@ Status Correct(const Invocation& invocation, const CommandContext& context) {
   });
 }
 
+Status Print(const std::string& text) {
+  if (!(std::cout << text << std::flush)) {
+    return Fail(ErrorCode::kIo, "standard output cannot be written");
+  }
+  return {};
+}
+
 Status Compare(const Invocation& invocation, const CommandContext& context) {
   std::ostringstream report;
   const Status status =
       RunAsPass(context, "compare", "frames", [&](const CompareProgress& progress) {
         return RunCompare(invocation.compare, context.logger, report, progress);
       });
-  if (status && !(std::cout << report.str() << std::flush)) {
-    return Fail(ErrorCode::kIo, "standard output cannot be written");
-  }
-  return status;
+  return status ? Print(report.str()) : status;
+}
+
+Status Evaluate(const Invocation& invocation, const CommandContext& context) {
+  std::ostringstream report;
+  const Status status = RunAsPass(
+      context, "evaluate", "photos", [&](const evaluation::EvaluationProgress& progress) {
+        return RunEvaluate(invocation.evaluate, context.logger, report, progress);
+      });
+  return status ? Print(report.str()) : status;
 }
 
 Status Dispatch(const Invocation& invocation, const CommandContext& context) {
@@ -82,6 +96,8 @@ Status Dispatch(const Invocation& invocation, const CommandContext& context) {
       return Compare(invocation, context);
     case CommandId::kSimulate:
       return Simulate(invocation, context);
+    case CommandId::kEvaluate:
+      return Evaluate(invocation, context);
   }
   return Fail(ErrorCode::kInternal, "no such command");
 }

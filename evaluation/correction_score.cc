@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evaluation/correction_score.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
 #include <utility>
 
+#include "evaluation/synthetic_sample.h"
 #include "stabilizer/backward_map.h"
 #include "stabilizer/interpolation.h"
 #include "stabilizer/plane_warper.h"
@@ -33,15 +35,15 @@ Result<CorrectedPicture> CorrectPicture(const FrameView& rs, const MotionField& 
     return Propagate(status.error());
   }
   CorrectedPicture corrected{std::move(*picture), {}};
-  corrected.valid.reserve(static_cast<std::size_t>(rs.width) * static_cast<std::size_t>(rs.height));
+  std::vector<Eigen::Vector2f> displacement;
+  displacement.reserve(static_cast<std::size_t>(rs.width) * static_cast<std::size_t>(rs.height));
   for (int y = 0; y < rs.height; ++y) {
     for (int x = 0; x < rs.width; ++x) {
-      const Eigen::Vector2d source = map.Sample(Eigen::Vector2d(x, y));
-      const bool inside = source.x() >= 0.0 && source.x() <= rs.width - 1.0 && source.y() >= 0.0 &&
-                          source.y() <= rs.height - 1.0;
-      corrected.valid.push_back(inside ? 1 : 0);
+      const Eigen::Vector2d pixel(x, y);
+      displacement.emplace_back((map.Sample(pixel) - pixel).cast<float>());
     }
   }
+  corrected.valid = SourcesInside(displacement, rs.width, rs.height);
   return corrected;
 }
 

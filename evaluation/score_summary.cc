@@ -7,8 +7,9 @@
 namespace rsstab::evaluation {
 namespace {
 
-// Below this a part of the motion is not there, and shares of it say nothing.
-constexpr double kNoMotion_px = 0.2;
+// Below this a part of the motion is hardly there (the horizontal part of a stretch is about 0.6
+// px), and shares of it say nothing.
+constexpr double kNoMotion_px = 1.0;
 
 using Group = std::vector<const SampleRecord*>;
 

@@ -23,8 +23,8 @@ struct MethodSummary {
   double epe_p90_px = 0.0;
   double horizontal_px = 0.0;
   double vertical_px = 0.0;
-  // Share of the uncorrected figure that is left: ratio of the means. NaN where that is zero (a
-  // stretch has next to no horizontal part, a still frame none at all).
+  // Share of the uncorrected figure that is left: ratio of the means. NaN where that is
+  // below 1 px (a stretch has next to no horizontal part, a still frame none at all).
   double epe_ratio = 0.0;
   double horizontal_ratio = 0.0;
   double vertical_ratio = 0.0;

@@ -73,10 +73,10 @@ Result<std::optional<AxisCoverage>> ScoreSpread(const SyntheticSample& sample,
   if (!answer) {
     return Propagate(answer.error(), sampler->Name());
   }
-  if (answer->curves.empty()) {
-    return std::nullopt;  // the model makes dense fields
+  const int bands = answer->curves.empty() ? 0 : static_cast<int>(answer->curves.front().size());
+  if (bands <= kMiddleBands) {
+    return std::nullopt;  // a model of dense fields, or of no more than the middle
   }
-  const auto bands = static_cast<int>(answer->curves.front().size());
   const auto coverage = CountCoverage(BandsOfCurve(sample.curve, bands), answer->curves);
   if (!coverage) {
     return Propagate(coverage.error(), sampler->Name());

@@ -25,17 +25,15 @@ std::vector<Eigen::Vector2f> PixelDisplacements(const MotionField& field) {
 std::vector<std::uint8_t> SourcesInside(const std::vector<Eigen::Vector2f>& displacement, int width,
                                         int height) {
   std::vector<std::uint8_t> inside(displacement.size());
-  const auto last_x = static_cast<float>(width - 1);
-  const auto last_y = static_cast<float>(height - 1);
+  const auto inside_of = [](float source, int size) {
+    return source >= -kEdgeTolerancePx && source <= size - 1 + kEdgeTolerancePx;
+  };
   std::size_t i = 0;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x, ++i) {
       const Eigen::Vector2f source =
           Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) + displacement[i];
-      inside[i] =
-          source.x() >= 0.0F && source.x() <= last_x && source.y() >= 0.0F && source.y() <= last_y
-              ? 1
-              : 0;
+      inside[i] = inside_of(source.x(), width) && inside_of(source.y(), height) ? 1 : 0;
     }
   }
   return inside;

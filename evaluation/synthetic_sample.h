@@ -41,6 +41,10 @@ struct SyntheticSample {
 // A field at every pixel, row by row.
 [[nodiscard]] std::vector<Eigen::Vector2f> PixelDisplacements(const MotionField& field);
 
+// Sources this far outside the outermost pixel centres still count as inside: rounding must not
+// cost a still frame its border.
+inline constexpr double kEdgeTolerancePx = 1e-3;
+
 // 1 where pixel + displacement lies in [0, width - 1] x [0, height - 1], else 0.
 [[nodiscard]] std::vector<std::uint8_t> SourcesInside(
     const std::vector<Eigen::Vector2f>& displacement, int width, int height);

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef RSSTAB_CLI_COMMANDS_EVALUATE_OPTIONS_H_
+#define RSSTAB_CLI_COMMANDS_EVALUATE_OPTIONS_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "stabilizer/pipeline/option_table.h"
+
+namespace rsstab::cli {
+
+// What is evaluated on; docs/evaluation.md defines each.
+enum class EvaluationProtocol {
+  kSyntheticVal,  // photographs recorded along known motions
+  kPairs,         // real rolling-shutter pictures with their global-shutter truth
+};
+
+// What `rs-stabilize evaluate` is told. Defaults are the member initialisers.
+struct EvaluateOptions {
+  EvaluationProtocol protocol = EvaluationProtocol::kSyntheticVal;
+  std::string photos;             // synthetic-val: folder of photographs
+  std::string pairs;              // pairs: folder to look for pairs in
+  std::string structured;         // list of photographs to be told apart
+  std::string structured_source;  // text that the lines of the list must contain to count
+  std::int64_t limit = 0;         // photographs or pairs from the first; 0 = all
+  std::int64_t linearity_photos = 100;
+
+  std::string methods = "none,regression,sample,mean";  // regression only with its model
+  std::string model;                                    // empty: the default one
+  std::string regression_model;
+  std::string device = "cpu";
+  int samples = 8;               // of the method "mean"
+  int calibration_samples = 16;  // 0 = leave the calibration out
+  int steps = 0;                 // 0 = the model's default
+  std::optional<double> guidance;
+  std::optional<double> eta;
+  bool know_focal = false;
+
+  std::int64_t seed = 1;
+  int jobs = 0;      // photographs at a time; 0 = one per core
+  std::string csv;   // file for one line per picture and method
+  std::string json;  // file for everything in the table
+};
+
+[[nodiscard]] const pipeline::OptionTable<EvaluateOptions>& EvaluateOptionTable();
+
+}  // namespace rsstab::cli
+
+#endif  // RSSTAB_CLI_COMMANDS_EVALUATE_OPTIONS_H_

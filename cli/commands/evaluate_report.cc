@@ -1,0 +1,358 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands/evaluate.h"
+
+namespace rsstab::cli {
+namespace {
+
+using evaluation::GroupSummary;
+using evaluation::Interval;
+using evaluation::MethodScore;
+using evaluation::MethodSummary;
+using evaluation::PairScore;
+using evaluation::SkewLevel;
+using evaluation::SkewResponse;
+using Json = nlohmann::ordered_json;
+
+constexpr double kPercent = 100.0;
+
+Json OrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json ToJson(const Interval& interval) { return {OrNull(interval.low), OrNull(interval.high)}; }
+
+std::string Cell(double value, int width, int digits) {
+  return std::isfinite(value) ? fmt::format("{:>{}.{}f}", value, width, digits)
+                              : fmt::format("{:>{}}", "-", width);
+}
+
+std::string HeaderText(const EvaluationHeader& header) {
+  std::string text;
+  for (const EvaluationSetting& setting : header.settings) {
+    if (!setting.is_default || setting.name == "protocol" || setting.name == "seed") {
+      text += (text.empty() ? "" : ", ") + setting.name + " " + setting.value;
+    }
+  }
+  text += "\n";
+  for (const auto& [name, error] : header.failures) {
+    text += "left out: " + name + ": " + error.message + "\n";
+  }
+  return text;
+}
+
+Json HeaderJson(const EvaluationHeader& header) {
+  Json json;
+  json["settings"] = Json::object();
+  for (const EvaluationSetting& setting : header.settings) {
+    json["settings"][setting.name] = setting.value;
+  }
+  json["left_out"] = Json::array();
+  for (const auto& [name, error] : header.failures) {
+    json["left_out"].push_back({{"name", name}, {"reason", error.message}});
+  }
+  return json;
+}
+
+std::string GroupTitle(const GroupSummary& group) {
+  return fmt::format("{}{}, {} pictures", group.motion,
+                     group.structured_only ? ", structured photos" : "", group.pictures);
+}
+
+std::string GroupText(const GroupSummary& group) {
+  std::string text = fmt::format(
+      "\n{}\n{:<12}{:>7}{:>8}{:>7}{:>6}{:>7}{:>6}{:>7}{:>6}{:>9}{:>18}{:>7}{:>7}{:>8}{:>8}\n",
+      GroupTitle(group), "method", "EPE", "median", "p90", "%", "u", "%", "v", "%", "change",
+      "95% interval", "PSNR", "SSIM", "valid%", "ms");
+  for (const MethodSummary& m : group.methods) {
+    const std::string interval =
+        fmt::format("[{:.2f}, {:.2f}]", m.difference_interval.low, m.difference_interval.high);
+    text += fmt::format("{:<12}", m.method) + Cell(m.epe_px, 7, 2) + Cell(m.epe_median_px, 8, 2) +
+            Cell(m.epe_p90_px, 7, 2) + Cell(kPercent * m.epe_ratio, 6, 0) +
+            Cell(m.horizontal_px, 7, 2) + Cell(kPercent * m.horizontal_ratio, 6, 0) +
+            Cell(m.vertical_px, 7, 2) + Cell(kPercent * m.vertical_ratio, 6, 0) +
+            Cell(m.difference_px, 9, 2) + fmt::format("{:>18}", interval) + Cell(m.psnr_db, 7, 2) +
+            Cell(m.ssim, 7, 3) + Cell(kPercent * m.valid_share, 8, 1) + Cell(m.ms, 8, 1) + "\n";
+  }
+  return text;
+}
+
+// How often the truth lay inside the central 80% of the samples.
+std::string CoverageText(const std::vector<GroupSummary>& groups) {
+  std::string text;
+  for (const GroupSummary& group : groups) {
+    if (group.coverage) {
+      evaluation::Coverage all;
+      std::string axes;
+      for (const evaluation::Coverage& axis : *group.coverage) {
+        all += axis;
+        axes += Cell(kPercent * axis.Share(), 8, 1);
+      }
+      text += fmt::format("{:<28}", group.motion + (group.structured_only ? ", structured" : "")) +
+              axes + Cell(kPercent * all.Share(), 8, 1) + "\n";
+    }
+  }
+  if (text.empty()) {
+    return text;
+  }
+  return fmt::format(
+             "\ntruth inside the central 80% of the samples, %\n{:<28}{:>8}{:>8}{:>8}{:>8}\n",
+             "motion", "a", "b", "roll", "all") +
+         text;
+}
+
+std::string SkewText(const SkewResponse& skew) {
+  if (skew.photos == 0) {
+    return "";
+  }
+  std::string text = fmt::format(
+      "\nresponse to a known skew (px, top row to bottom row), {} photos\n{:>6}{:>10}{:>12}{:>10}"
+      "{:>22}{:>10}\n",
+      skew.photos, "k", "true", "predicted", "+-", "left after correcting", "+-");
+  for (const SkewLevel& level : skew.levels) {
+    text += Cell(level.factor, 6, 1) + Cell(level.true_px, 10, 2) +
+            Cell(level.predicted_px, 12, 2) + Cell(level.predicted_error_px, 10, 2) +
+            Cell(level.remainder_px, 22, 2) + Cell(level.remainder_error_px, 10, 2) + "\n";
+  }
+  text +=
+      fmt::format("slope {:.3f} [{:.3f}, {:.3f}], intercept {:.2f} px, R2 of the means {:.4f}\n",
+                  skew.fit.slope, skew.slope_interval.low, skew.slope_interval.high,
+                  skew.fit.intercept, skew.linearity);
+  text += fmt::format(
+      "left after correcting with the true motion: {:.3f} +- {:.3f} px; zero crossing at {:.3f} "
+      "[{:.3f}, {:.3f}] of the true readout\n",
+      skew.remainder_px, skew.remainder_error_px, skew.zero_crossing,
+      skew.zero_crossing_interval.low, skew.zero_crossing_interval.high);
+  return text;
+}
+
+Json MethodJson(const MethodSummary& m) {
+  return {{"epe", OrNull(m.epe_px)},
+          {"epe_median", OrNull(m.epe_median_px)},
+          {"epe_p90", OrNull(m.epe_p90_px)},
+          {"epe_ratio", OrNull(m.epe_ratio)},
+          {"u", OrNull(m.horizontal_px)},
+          {"u_ratio", OrNull(m.horizontal_ratio)},
+          {"v", OrNull(m.vertical_px)},
+          {"v_ratio", OrNull(m.vertical_ratio)},
+          {"epe_change", OrNull(m.difference_px)},
+          {"epe_change_interval", ToJson(m.difference_interval)},
+          {"psnr", OrNull(m.psnr_db)},
+          {"ssim", OrNull(m.ssim)},
+          {"valid", OrNull(m.valid_share)},
+          {"ms", OrNull(m.ms)}};
+}
+
+Json GroupJson(const GroupSummary& group) {
+  Json json;
+  json["photos"] = group.structured_only ? "structured" : "all";
+  json["motion"] = group.motion;
+  json["samples"] = group.pictures;
+  json["methods"] = Json::object();
+  for (const MethodSummary& method : group.methods) {
+    json["methods"][method.method] = MethodJson(method);
+  }
+  if (group.coverage) {
+    evaluation::Coverage all;
+    for (const evaluation::Coverage& axis : *group.coverage) {
+      all += axis;
+    }
+    json["coverage"] = {{"a", OrNull((*group.coverage)[0].Share())},
+                        {"b", OrNull((*group.coverage)[1].Share())},
+                        {"roll", OrNull((*group.coverage)[2].Share())},
+                        {"all", OrNull(all.Share())}};
+  }
+  return json;
+}
+
+Json SkewJson(const SkewResponse& skew) {
+  Json json;
+  json["photos"] = skew.photos;
+  json["levels"] = Json::array();
+  for (const SkewLevel& level : skew.levels) {
+    json["levels"].push_back({{"k", level.factor},
+                              {"true", OrNull(level.true_px)},
+                              {"predicted", OrNull(level.predicted_px)},
+                              {"predicted_error", OrNull(level.predicted_error_px)},
+                              {"remainder", OrNull(level.remainder_px)},
+                              {"remainder_error", OrNull(level.remainder_error_px)}});
+  }
+  json["slope"] = OrNull(skew.fit.slope);
+  json["slope_interval"] = ToJson(skew.slope_interval);
+  json["intercept"] = OrNull(skew.fit.intercept);
+  json["linearity"] = OrNull(skew.linearity);
+  json["remainder"] = OrNull(skew.remainder_px);
+  json["remainder_error"] = OrNull(skew.remainder_error_px);
+  json["zero_crossing"] = OrNull(skew.zero_crossing);
+  json["zero_crossing_interval"] = ToJson(skew.zero_crossing_interval);
+  return json;
+}
+
+// Paths need not be UTF-8.
+std::string Dump(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+// A CSV field; quoted where it must be.
+std::string Field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) {
+    return text;
+  }
+  std::string quoted = "\"";
+  for (const char c : text) {
+    quoted += c == '"' ? "\"\"" : std::string(1, c);
+  }
+  return quoted + "\"";
+}
+
+// Mean over the pairs of one method's figure.
+double MeanOf(const PairReport& report, std::size_t method, double PairScore::*figure) {
+  double sum = 0.0;
+  for (const evaluation::PairRecord& pair : report.pairs) {
+    sum += pair.methods[method].*figure;
+  }
+  return sum / static_cast<double>(report.pairs.size());
+}
+
+std::string PairRow(const std::string& name, const PairScore& s) {
+  return fmt::format("{:<24}{:<12}", name, s.method) + Cell(s.untouched_psnr_db, 9, 2) +
+         Cell(s.psnr_db, 9, 2) + Cell(s.untouched_ssim, 9, 3) + Cell(s.ssim, 9, 3) +
+         Cell(kPercent * s.valid_share, 8, 1) + Cell(s.moved_px, 8, 2) + Cell(s.ms, 8, 1) + "\n";
+}
+
+PairScore MeanScore(const PairReport& report, std::size_t method) {
+  PairScore mean;
+  mean.method = report.pairs.front().methods[method].method;
+  for (double PairScore::*figure :
+       {&PairScore::psnr_db, &PairScore::ssim, &PairScore::untouched_psnr_db,
+        &PairScore::untouched_ssim, &PairScore::valid_share, &PairScore::moved_px,
+        &PairScore::ms}) {
+    mean.*figure = MeanOf(report, method, figure);
+  }
+  return mean;
+}
+
+Json PairJson(const PairScore& s) {
+  return {{"psnr", OrNull(s.psnr_db)},
+          {"psnr_untouched", OrNull(s.untouched_psnr_db)},
+          {"ssim", OrNull(s.ssim)},
+          {"ssim_untouched", OrNull(s.untouched_ssim)},
+          {"valid", OrNull(s.valid_share)},
+          {"moved", OrNull(s.moved_px)},
+          {"ms", OrNull(s.ms)}};
+}
+
+}  // namespace
+
+std::string FormatText(const SyntheticReport& report) {
+  std::string text = HeaderText(report.header);
+  for (const GroupSummary& group : report.groups) {
+    text += GroupText(group);
+  }
+  text += CoverageText(report.groups);
+  text += SkewText(report.skew);
+  return text +
+         "\nEPE, u (horizontal part), v (vertical part) in px at 800x600; % of the uncorrected "
+         "figure; change of the EPE against no correction; ms with whatever else was running\n";
+}
+
+std::string FormatJson(const SyntheticReport& report) {
+  Json json;
+  json["protocol"] = "synthetic-val";
+  json.update(HeaderJson(report.header));
+  json["photos"] = report.photos;
+  for (const GroupSummary& group : report.groups) {
+    if (!group.structured_only && group.motion == "all") {
+      // What every data set reports.
+      const Json all = GroupJson(group);
+      json["samples"] = all["samples"];
+      json["methods"] = all["methods"];
+    }
+  }
+  json["groups"] = Json::array();
+  for (const GroupSummary& group : report.groups) {
+    json["groups"].push_back(GroupJson(group));
+  }
+  if (report.skew.photos > 0) {
+    json["skew"] = SkewJson(report.skew);
+  }
+  return Dump(json);
+}
+
+std::string FormatCsv(const SyntheticReport& report) {
+  std::string text =
+      "photo,structured,motion,focal_widths,top_to_bottom,photo_per_pixel,method,epe,u,v,psnr,ssim,"
+      "valid,ms\n";
+  for (const evaluation::SampleRecord& sample : report.samples) {
+    for (const MethodScore& m : sample.methods) {
+      text += fmt::format(
+          "{},{},{},{:.4f},{},{:.4f},{},{:.4f},{:.4f},{:.4f},{:.3f},{:.5f},{:.5f},"
+          "{:.2f}\n",
+          Field(sample.photo), sample.structured ? 1 : 0,
+          evaluation::MotionClassName(sample.motion_class), sample.focal_widths,
+          sample.top_to_bottom ? 1 : 0, sample.photo_per_pixel, m.method, m.epe_px, m.horizontal_px,
+          m.vertical_px, m.psnr_db, m.ssim, m.valid_share, m.ms);
+    }
+  }
+  return text;
+}
+
+std::string FormatText(const PairReport& report) {
+  std::string text =
+      HeaderText(report.header) + fmt::format("\n{:<24}{:<12}{:>9}{:>9}{:>9}{:>9}{:>8}{:>8}{:>8}\n",
+                                              "pair", "method", "PSNR in", "out", "SSIM in", "out",
+                                              "valid%", "moved", "ms");
+  for (const evaluation::PairRecord& pair : report.pairs) {
+    for (const PairScore& score : pair.methods) {
+      text += PairRow(pair.name, score);
+    }
+  }
+  if (!report.pairs.empty()) {
+    for (std::size_t method = 0; method < report.pairs.front().methods.size(); ++method) {
+      text += PairRow("mean", MeanScore(report, method));
+    }
+  }
+  return text +
+         "\nin: the untouched picture over the same pixels; moved: mean displacement, px of the "
+         "picture\n";
+}
+
+std::string FormatJson(const PairReport& report) {
+  Json json;
+  json["protocol"] = "pairs";
+  json.update(HeaderJson(report.header));
+  json["samples"] = report.pairs.size();
+  json["methods"] = Json::object();
+  if (!report.pairs.empty()) {
+    for (std::size_t method = 0; method < report.pairs.front().methods.size(); ++method) {
+      const PairScore mean = MeanScore(report, method);
+      json["methods"][mean.method] = PairJson(mean);
+    }
+  }
+  json["pairs"] = Json::array();
+  for (const evaluation::PairRecord& pair : report.pairs) {
+    Json entry = {{"name", pair.name}, {"width", pair.width}, {"height", pair.height}};
+    for (const PairScore& score : pair.methods) {
+      entry["methods"][score.method] = PairJson(score);
+    }
+    json["pairs"].push_back(std::move(entry));
+  }
+  return Dump(json);
+}
+
+std::string FormatCsv(const PairReport& report) {
+  std::string text =
+      "pair,width,height,method,psnr,psnr_untouched,ssim,ssim_untouched,valid,moved,ms\n";
+  for (const evaluation::PairRecord& pair : report.pairs) {
+    for (const PairScore& s : pair.methods) {
+      text += fmt::format("{},{},{},{},{:.3f},{:.3f},{:.5f},{:.5f},{:.5f},{:.4f},{:.2f}\n",
+                          Field(pair.name), pair.width, pair.height, s.method, s.psnr_db,
+                          s.untouched_psnr_db, s.ssim, s.untouched_ssim, s.valid_share, s.moved_px,
+                          s.ms);
+    }
+  }
+  return text;
+}
+
+}  // namespace rsstab::cli
