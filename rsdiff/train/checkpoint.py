@@ -3,7 +3,8 @@
 
 A checkpoint is a dict: `net` and `config` say which network, `objective` what it was trained for;
 `model` and `ema` are its weights and their average; `step`, `optimizer`, `ema_step`, `scaler` are
-what resuming needs; `reference_row` says where the fields it learned are zero. Random numbers follow from (seed, step), see train.py.
+what resuming needs; `reference_row` says where the fields it learned are zero. Random numbers
+follow from (seed, step), see train.py.
 """
 
 from __future__ import annotations
