@@ -107,12 +107,17 @@ TEST_F(Correct, StrengthZeroIsTheSamePicture) {
 }
 
 TEST_F(Correct, StoredRowsAreTheSensorsWhateverTheOrientation) {
-  cv::Mat eight;
-  Scene(true).convertTo(eight, CV_8U, 1.0 / 257.0);
-  cv::Mat truth;
-  Scene(false).convertTo(truth, CV_8U, 1.0 / 257.0);
+  // Grey in three channels: JPEG keeps colours in half the size only.
+  const auto grey = [](cv::Mat scene) {
+    cv::extractChannel(scene, scene, 0);
+    scene.convertTo(scene, CV_8U, 1.0 / 257.0);
+    cv::cvtColor(scene, scene, cv::COLOR_GRAY2BGR);
+    return scene;
+  };
+  const cv::Mat recorded = grey(Scene(true));
+  const cv::Mat truth = grey(Scene(false));
   for (const char* name : {"in.jpg", "in.tif"}) {
-    cv::imwrite(Path(name), eight, {cv::IMWRITE_JPEG_QUALITY, 98});
+    cv::imwrite(Path(name), recorded, {cv::IMWRITE_JPEG_QUALITY, 98});
     {
       auto image = Exiv2::ImageFactory::open(Path(name));
       image->readMetadata();
@@ -133,7 +138,7 @@ TEST_F(Correct, StoredRowsAreTheSensorsWhateverTheOrientation) {
       cv::rotate(stored, stored, cv::ROTATE_90_COUNTERCLOCKWISE);
     }
     ASSERT_EQ(stored.size(), truth.size());
-    EXPECT_LT(MeanDifference(stored, truth), kMeanError + 1.5) << name;  // JPEG twice
+    EXPECT_LT(MeanDifference(stored, truth), kMeanError + 1.0) << name;  // JPEG twice
   }
 }
 

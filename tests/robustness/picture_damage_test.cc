@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The `correct` command and --rs diffusion against bad pictures, places and models.
 #include <gmock/gmock.h>
+#include <spdlog/fmt/fmt.h>
 
+#include <map>
 #include <opencv2/imgcodecs.hpp>
 
 #include "tests/robustness/damage.h"
@@ -112,17 +114,23 @@ TEST_F(PictureDamage, DevicesThatAreNotThere) {
 }
 
 TEST_F(PictureDamage, SizesAndDepthsOfAllKinds) {
+  std::filesystem::create_directory(Path("odd"));
+  std::map<std::string, cv::Mat> pictures;
   for (const auto& [width, height] : {std::pair(1, 1), std::pair(1, 50), std::pair(50, 1),
                                       std::pair(2, 2), std::pair(37, 23), std::pair(4000, 3)}) {
     for (const int type : {CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1, CV_16UC4}) {
       cv::Mat picture(height, width, type);
       cv::randu(picture, 0, 250);
-      cv::imwrite(Path("odd.png"), picture);
-      ExpectDone({"odd.png", "-o", "out.png", "--overwrite", "--field", "fields"});
-      const cv::Mat out = cv::imread(Path("out.png"), cv::IMREAD_UNCHANGED);
-      EXPECT_EQ(out.size(), picture.size());
-      EXPECT_EQ(out.type(), type);
+      const std::string name = fmt::format("{}-{}-{}.png", width, height, type);
+      cv::imwrite(Path("odd/" + name), picture);
+      pictures[name] = picture;
     }
+  }
+  ExpectDone({"odd", "-o", "out", "--field", "fields"});
+  for (const auto& [name, picture] : pictures) {
+    const cv::Mat out = cv::imread(Path("out/" + name), cv::IMREAD_UNCHANGED);
+    EXPECT_EQ(out.size(), picture.size()) << name;
+    EXPECT_EQ(out.type(), picture.type()) << name;
   }
 }
 

@@ -33,6 +33,7 @@ arrows igf/base 'igf/base/'
 arrows igf 'igf/'
 [[ -d rsdiff ]] && arrows rsdiff 'igf/base/|rsdiff/'
 arrows evaluation 'igf/|rsdiff/|stabilizer/|evaluation/'
+arrows cli/images 'igf/base/|cli/images/'
 arrows cli/media 'igf/base/|cli/media/'
 while IFS= read -r hit; do
   complain "$hit: points up the module graph"
