@@ -42,10 +42,12 @@ std::string BashCompletion() {
         }
         const std::string flag = "--" + option->get_lnames().front();
         flags += (flags.empty() ? "" : " ") + flag;
-        if (option->get_items_expected_max() == 0 || option->get_type_name() == "FILE") {
-          continue;
+        const std::string type = option->get_type_name();
+        if (option->get_items_expected_max() == 0 || type == "FILE" || type == "FOLDER" ||
+            type == "DIR") {
+          continue;  // nothing follows, or what the shell completes by itself
         }
-        words_by_flag[flag] = WordsOf(option->get_type_name());
+        words_by_flag[flag] = WordsOf(type);
       }
     }
     if (!text.name.empty()) {
