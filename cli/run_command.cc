@@ -73,8 +73,8 @@ Status Compare(const Invocation& invocation, const CommandContext& context) {
 
 Status Evaluate(const Invocation& invocation, const CommandContext& context) {
   std::ostringstream report;
-  const Status status = RunAsPass(
-      context, "evaluate", "photos", [&](const evaluation::EvaluationProgress& progress) {
+  const Status status =
+      RunAsPass(context, "evaluate", "photos", [&](const evaluation::EvaluationProgress& progress) {
         return RunEvaluate(invocation.evaluate, context.logger, report, progress);
       });
   return status ? Print(report.str()) : status;

@@ -7,6 +7,7 @@
 #include <opencv2/core/utility.hpp>
 #include <set>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 #include "evaluation/photo.h"
@@ -131,6 +132,19 @@ void Shorten(std::vector<Item>& items, std::int64_t limit) {
   }
 }
 
+// A long run should not end at a folder that was never there.
+Status CheckOutputFolders(const EvaluateOptions& options) {
+  for (const std::string& file : {options.csv, options.json}) {
+    const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+    std::error_code error;
+    if (!folder.empty() && !std::filesystem::is_directory(folder, error)) {
+      return Fail(ErrorCode::kNotFound, "{}: there is no folder {} to write it to.", file,
+                  folder.string());
+    }
+  }
+  return {};
+}
+
 // Table to `out`, the other forms to their files.
 template <typename Report>
 Status WriteReport(const Report& report, const EvaluateOptions& options, std::ostream& out) {
@@ -230,6 +244,9 @@ Status RunEvaluate(const EvaluateOptions& options, const Logger& logger, std::os
   if (ResolveThreadCount(options.jobs) > 1) {
     // The photographs are what runs in parallel; OpenCV's own threads would only get in the way.
     cv::setNumThreads(1);
+  }
+  if (Status status = CheckOutputFolders(options); !status) {
+    return status;
   }
   const auto factory = MakeMethodFactory(options);
   if (!factory) {

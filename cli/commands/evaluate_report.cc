@@ -24,8 +24,16 @@ Json OrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 Json ToJson(const Interval& interval) { return {OrNull(interval.low), OrNull(interval.high)}; }
 
 std::string Cell(double value, int width, int digits) {
-  return std::isfinite(value) ? fmt::format("{:>{}.{}f}", value, width, digits)
-                              : fmt::format("{:>{}}", "-", width);
+  if (!std::isfinite(value)) {
+    return fmt::format("{:>{}}", "-", width);
+  }
+  // What rounds to zero has no sign.
+  const double shown = std::abs(value) < 0.5 * std::pow(10.0, -digits) ? 0.0 : value;
+  return fmt::format("{:>{}.{}f}", shown, width, digits);
+}
+
+std::string IntervalText(const Interval& interval, int digits) {
+  return "[" + Cell(interval.low, 0, digits) + ", " + Cell(interval.high, 0, digits) + "]";
 }
 
 std::string HeaderText(const EvaluationHeader& header) {
@@ -66,13 +74,12 @@ std::string GroupText(const GroupSummary& group) {
       GroupTitle(group), "method", "EPE", "median", "p90", "%", "u", "%", "v", "%", "change",
       "95% interval", "PSNR", "SSIM", "valid%", "ms");
   for (const MethodSummary& m : group.methods) {
-    const std::string interval =
-        fmt::format("[{:.2f}, {:.2f}]", m.difference_interval.low, m.difference_interval.high);
     text += fmt::format("{:<12}", m.method) + Cell(m.epe_px, 7, 2) + Cell(m.epe_median_px, 8, 2) +
             Cell(m.epe_p90_px, 7, 2) + Cell(kPercent * m.epe_ratio, 6, 0) +
             Cell(m.horizontal_px, 7, 2) + Cell(kPercent * m.horizontal_ratio, 6, 0) +
             Cell(m.vertical_px, 7, 2) + Cell(kPercent * m.vertical_ratio, 6, 0) +
-            Cell(m.difference_px, 9, 2) + fmt::format("{:>18}", interval) + Cell(m.psnr_db, 7, 2) +
+            Cell(m.difference_px, 9, 2) +
+            fmt::format("{:>18}", IntervalText(m.difference_interval, 2)) + Cell(m.psnr_db, 7, 2) +
             Cell(m.ssim, 7, 3) + Cell(kPercent * m.valid_share, 8, 1) + Cell(m.ms, 8, 1) + "\n";
   }
   return text;
@@ -115,15 +122,14 @@ std::string SkewText(const SkewResponse& skew) {
             Cell(level.predicted_px, 12, 2) + Cell(level.predicted_error_px, 10, 2) +
             Cell(level.remainder_px, 22, 2) + Cell(level.remainder_error_px, 10, 2) + "\n";
   }
-  text +=
-      fmt::format("slope {:.3f} [{:.3f}, {:.3f}], intercept {:.2f} px, R2 of the means {:.4f}\n",
-                  skew.fit.slope, skew.slope_interval.low, skew.slope_interval.high,
-                  skew.fit.intercept, skew.linearity);
+  text += fmt::format("slope {} {}, intercept {} px, R2 of the means {}\n",
+                      Cell(skew.fit.slope, 0, 3), IntervalText(skew.slope_interval, 3),
+                      Cell(skew.fit.intercept, 0, 2), Cell(skew.linearity, 0, 4));
   text += fmt::format(
-      "left after correcting with the true motion: {:.3f} +- {:.3f} px; zero crossing at {:.3f} "
-      "[{:.3f}, {:.3f}] of the true readout\n",
-      skew.remainder_px, skew.remainder_error_px, skew.zero_crossing,
-      skew.zero_crossing_interval.low, skew.zero_crossing_interval.high);
+      "left after correcting with the true motion: {} +- {} px; zero crossing at {} {} of the true "
+      "readout\n",
+      Cell(skew.remainder_px, 0, 3), Cell(skew.remainder_error_px, 0, 3),
+      Cell(skew.zero_crossing, 0, 3), IntervalText(skew.zero_crossing_interval, 3));
   return text;
 }
 
