@@ -68,6 +68,7 @@ class PreferStructure:
 
     def __init__(self, source: SampleSource, share: float):
         self.source, self.share = source, share
+        self.reference_row = source.reference_row
 
     def batch(self, rng: np.random.Generator, count: int) -> Sample:
         pairs = self.source.batch(rng, 2 * count)

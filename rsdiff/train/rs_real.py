@@ -113,6 +113,7 @@ class RsReal:
     def __init__(self, files: list[Path], kind: str):
         self.files = files
         self.kind = kind
+        self.reference_row = "first" if kind == "reference" else "middle"
 
     def batch(self, rng: np.random.Generator, count: int) -> Sample:
         return stacked([self.draw(rng) for _ in range(count)])

@@ -20,6 +20,7 @@ from data_source import add_source_options, open_source
 from samples import KINDS, Sample, SampleSource
 
 SHARD_SAMPLES = 10_000
+REFERENCE_ROW = "reference_row"  # file of a shard that names it
 REFRESH_BATCHES = 500  # after so many, look whether shards were added
 
 
@@ -29,6 +30,7 @@ def make_shard(source: SampleSource, folder: Path, seed: tuple[int, int], count:
     part.mkdir(parents=True, exist_ok=True)
     for name, array in arrays.items():
         np.save(part / f"{name}.npy", array)
+    (part / REFERENCE_ROW).write_text(source.reference_row)
     part.rename(folder)
 
 
@@ -43,14 +45,19 @@ class SamplePool:
         self.refresh()
         if not self.shards:
             raise SystemExit(f"{folder}: no shards; sample_pool.py makes them")
+        rows = {(folder / name / REFERENCE_ROW).read_text() for name in self.shards}
+        if len(rows) > 1:
+            raise SystemExit(f"{folder}: shards of two kinds, zero on the middle and on the first row")
+        (self.reference_row,) = rows
 
     def refresh(self) -> None:
         for path in sorted(self.folder.glob("shard-*")):
             if path.suffix != ".part" and path.name not in self.shards:
-                missing = [n for n in self.names if not (path / f"{n}.npy").exists()]
-                if missing:
-                    raise SystemExit(f"{path}: has no {missing[0]}.npy; was it made for this net?")
                 files = {n: path / f"{n}.npy" for n in self.names}
+                needed = [*files.values(), path / REFERENCE_ROW]
+                missing = [file.name for file in needed if not file.exists()]
+                if missing:
+                    raise SystemExit(f"{path}: has no {missing[0]}; was it made for this network?")
                 self.shards[path.name] = {n: np.load(f, mmap_mode="r") for n, f in files.items()}
 
     def __len__(self) -> int:

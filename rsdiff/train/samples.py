@@ -27,6 +27,8 @@ Sample = dict[str, np.ndarray]
 
 
 class SampleSource(Protocol):
+    reference_row: str  # "middle" or "first": where its motions are zero
+
     def batch(self, rng: np.random.Generator, count: int) -> Sample:
         """`count` samples drawn with `rng`, each array with a new first dimension."""
 

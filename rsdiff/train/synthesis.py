@@ -49,6 +49,8 @@ def load_photos(files: list[Path], color: bool) -> list[np.ndarray]:
 class Synthesizer:
     """A SampleSource. Photographs are grey for compact samples, RGB for reference ones."""
 
+    reference_row = "middle"
+
     def __init__(self, photos: list[np.ndarray], curves: CurveSampler):
         self.photos = photos
         self.curves = curves

@@ -185,6 +185,7 @@ class Trainer:
         self.precision = MixedPrecision(options.precision, place.device)
         self.ema = Ema(self.net, options.ema)
         self.step = 0
+        self.reference_row = "middle"
         self.path = options.run / "checkpoint.pt"
         if self.path.exists():
             self._resume()
@@ -207,7 +208,7 @@ class Trainer:
             "net": self.net_name,
             "config": checkpoint.config_of(self.net),
             "objective": self.options.objective,
-            "reference_row": "middle" if self.options.rs_real is None else "first",
+            "reference_row": self.reference_row,
             "model": self.net.state_dict(),
             "optimizer": self.optimizer.state_dict(),
             "ema": self.ema.values,
@@ -236,6 +237,7 @@ class Trainer:
             if options.rs_real is not None and options.net == "compact":
                 progress.report(fit_report(rs_real_files(options.rs_real)))
         data = training_batches(options, place)
+        self.reference_row = data.source.reference_row
         parallel = place.parallel(self.learner, some_unused=self.net_name == "reference")
         self.learner.train()
         first, begin = self.step, time.monotonic()

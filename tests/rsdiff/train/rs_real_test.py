@@ -79,7 +79,10 @@ class Reader(unittest.TestCase):
             np.testing.assert_allclose(
                 sample["rotation"], curve().at(band_times()), atol=CURVE_TOLERANCE
             )
-            small = RsReal(files, "reference").draw(np.random.default_rng(1))
+            published = RsReal(files, "reference")
+            self.assertEqual(published.reference_row, "first")
+            self.assertEqual(RsReal(files, "compact").reference_row, "middle")
+            small = published.draw(np.random.default_rng(1))
             rs, gs, field = read_pair(files[0])
             # Network units are 63rds of the small picture's px; zero on the first row.
             row, column = 40, 20

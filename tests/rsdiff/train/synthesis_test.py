@@ -93,7 +93,7 @@ class Samples(unittest.TestCase):
             for array in KINDS["compact"]:
                 np.testing.assert_array_equal(first[array], again[array])
             self.assertTrue((first["planes"] != other["planes"]).any())
-            self.assertEqual(len(pool), 12)
+            self.assertEqual((len(pool), pool.reference_row), (12, "middle"))
             self.assertEqual(pool.batch(np.random.default_rng(1), 5)["planes"].shape[0], 5)
 
     def test_a_pool_for_another_network_is_refused(self):
@@ -156,6 +156,8 @@ class Structure(unittest.TestCase):
         self.assertGreater(*structure_score(planes)[::-1])
 
         class Both:
+            reference_row = "middle"
+
             def batch(self, _, count):
                 half = count // 2
                 return {"planes": planes[[0] * half + [1] * half], "which": np.repeat([0, 1], half)}

@@ -11,6 +11,7 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 import torch
@@ -19,18 +20,19 @@ import checkpoint
 import plot_log
 import train
 from devices import Place
-from learning_test import SMALL, batch_of
+from learning_test import SMALL, batch_of, small_reference
 from run_log import CsvLog, Progress
 
 CONFIG = json.dumps({k: v for k, v in SMALL.__dict__.items() if isinstance(v, int)
                      and not isinstance(v, bool)})
 
 
-def make_pool(folder: Path) -> None:
+def make_pool(folder: Path, kind: str = "compact") -> None:
     shard = folder / "shard-0000"
     shard.mkdir(parents=True)
-    for name, tensor in batch_of("compact", 24).items():
+    for name, tensor in batch_of(kind, 24).items():
         np.save(shard / f"{name}.npy", tensor.numpy())
+    (shard / "reference_row").write_text("first" if kind == "reference" else "middle")
 
 
 class Run(unittest.TestCase):
@@ -91,6 +93,16 @@ class Run(unittest.TestCase):
         self.assertTrue(all(torch.isfinite(v).all() for v in state["model"].values()))
         net, _ = checkpoint.load_averaged(self.folder / "regression" / "checkpoint.pt")
         self.assertFalse(net.training)
+
+    def test_the_published_network_trains_on_its_own_samples(self):
+        make_pool(self.folder / "fields", "reference")
+        fields = str(self.folder / "fields")
+        with mock.patch.object(checkpoint, "make_net", lambda name, config: small_reference()):
+            state = self.train("reference", "--net", "reference", "--pool", fields, "--dev", fields,
+                               "--steps", "2", "--draws", "1")
+        self.assertEqual((state["net"], state["reference_row"]), ("reference", "first"))
+        (row,) = self.rows("reference")
+        self.assertTrue({"motion", "photometric", "epe", "psnr"} <= set(row))
 
     def test_curves_are_drawn(self):
         self.train("run", "--steps", "2", "--report", "1")
