@@ -10,8 +10,10 @@
 
 namespace rsstab::rsdiff {
 
-// Gaussian numbers, mean 0 and standard deviation 1, that are the same on every platform. Item i of
-// a batch has a stream of its own: it gets the same numbers however many items there are.
+// Gaussian numbers, mean 0 and standard deviation 1, that are the same on every platform. Items 2i
+// and 2i + 1 of a batch get the same numbers with opposite signs (antithetic sampling: each is as
+// good a draw as any, and what noise does to a mean over them cancels to first order), every pair
+// from a stream of its own: an item's numbers do not depend on how many items there are.
 class SeededNoise {
  public:
   SeededNoise(std::uint64_t seed, int batch);

@@ -23,14 +23,27 @@ TEST(SeededNoise, IsTheSameForTheSameSeedAndNoOther) {
 
 // Written down once: any platform must give these bits.
 TEST(SeededNoise, GivesTheWrittenNumbers) {
-  Tensor state(2, {1, 2, 1});
-  SeededNoise noise(2024, 2);
+  Tensor state(3, {1, 2, 1});
+  SeededNoise noise(2024, 3);
   noise.Fill(state);
   constexpr double kUnit = 0x1.0p-20;
   EXPECT_EQ(state.values[0], static_cast<float>(-298555.0 * kUnit));
   EXPECT_EQ(state.values[1], static_cast<float>(88868.0 * kUnit));
-  EXPECT_EQ(state.values[2], static_cast<float>(2018245.0 * kUnit));
-  EXPECT_EQ(state.values[3], static_cast<float>(1149963.0 * kUnit));
+  EXPECT_EQ(state.values[4], static_cast<float>(2018245.0 * kUnit));
+  EXPECT_EQ(state.values[5], static_cast<float>(1149963.0 * kUnit));
+}
+
+TEST(SeededNoise, ComesInPairsOfOppositeSign) {
+  Tensor states(4, kState);
+  SeededNoise noise(5, 4);
+  for (int round = 0; round < 2; ++round) {
+    noise.Fill(states);
+    for (std::size_t i = 0; i < kState.Count(); ++i) {
+      EXPECT_EQ(states.Item(0)[i], -states.Item(1)[i]);
+      EXPECT_EQ(states.Item(2)[i], -states.Item(3)[i]);
+    }
+    EXPECT_NE(states.Item(0)[0], states.Item(2)[0]);
+  }
 }
 
 TEST(SeededNoise, AnItemDoesNotDependOnTheOthers) {

@@ -128,10 +128,10 @@ TEST(SingleImageEstimator, TellsMeanAndSpread) {
                            : b == 10 || b == 13 ? -2.0 / 16.0
                                                 : 0.0;
       const double deviation = kScale[c] * kDeviation * std::sqrt(1.0 + 164.0 / 256.0 - twice);
-      // Four standard errors of 400, and 2% that noise that the last step cannot tell from data
-      // takes.
+      // Four standard errors of 200 pairs, and 2% that noise that the last step cannot tell from
+      // data takes.
       EXPECT_NEAR(motion.curve_mean[b][c], truth[b][c], 0.2 * deviation) << b;
-      EXPECT_NEAR(motion.curve_deviation[b][c] / deviation, 1.0, 4.0 / std::sqrt(800.0) + 0.02)
+      EXPECT_NEAR(motion.curve_deviation[b][c] / deviation, 1.0, 4.0 / std::sqrt(400.0) + 0.02)
           << b;
     }
   }
