@@ -189,8 +189,13 @@ Status RunCorrect(const CorrectOptions& options, const Logger& logger,
   std::size_t done = failed;
   const auto start = std::chrono::steady_clock::now();
   Darkroom darkroom(options, std::move(*corrector), logger);
-  for (const CorrectionJob& job : plan->jobs) {
-    if (Status status = darkroom.Develop(job); !status) {
+  const auto tell = [&] {
+    return !progress ||
+           progress(static_cast<std::int64_t>(done), static_cast<std::int64_t>(pictures));
+  };
+  bool goes_on = tell();
+  for (auto job = plan->jobs.begin(); goes_on && job != plan->jobs.end(); ++job) {
+    if (Status status = darkroom.Develop(*job); !status) {
       if (pictures == 1) {
         return status;
       }
@@ -198,11 +203,11 @@ Status RunCorrect(const CorrectOptions& options, const Logger& logger,
       ++failed;
     }
     ++done;
-    if (progress &&
-        !progress(static_cast<std::int64_t>(done), static_cast<std::int64_t>(pictures))) {
-      return Fail(ErrorCode::kCancelled, "stopped as asked for; {} of {} pictures are done",
-                  done - failed, pictures);
-    }
+    goes_on = tell();
+  }
+  if (!goes_on && done < pictures) {
+    return Fail(ErrorCode::kCancelled, "stopped as asked for; {} of {} pictures are done",
+                done - failed, pictures);
   }
   if (failed > 0) {
     return Fail(ErrorCode::kIo, "{} of {} pictures could not be corrected", failed, pictures);

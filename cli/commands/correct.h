@@ -11,7 +11,7 @@
 
 namespace rsstab::cli {
 
-// Called after each picture, corrected or not; false stops.
+// Called before the first and after each picture, corrected or not; false stops.
 using CorrectProgress = std::function<bool(std::int64_t pictures_done, std::int64_t pictures)>;
 
 // Takes the rolling shutter out of photographs. A picture that fails is told as an error, and the
