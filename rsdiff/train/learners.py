@@ -86,7 +86,7 @@ class MotionLearner(nn.Module):
 
     def _regress(self, truth: torch.Tensor, context: list[torch.Tensor]) -> Losses:
         clean = self._from_nothing(torch.zeros_like(truth), context)
-        weight = size_weight(truth, self.options.large)
+        weight = size_weight(truth, self.options.large, self.options.still)
         return {"motion": self.compare(clean, truth, weight), "clean": clean}
 
     def _diffuse(self, truth: torch.Tensor, context: list[torch.Tensor]) -> Losses:
@@ -102,7 +102,7 @@ class MotionLearner(nn.Module):
         noisy = alpha.sqrt() * truth + (1 - alpha).sqrt() * torch.randn_like(truth)
         context = [c.repeat(draws, 1, 1, 1) for c in context]
         clean = self.denoise(noisy, t, context, seen).float()
-        weight = self.weights[t] * size_weight(truth, self.options.large)
+        weight = self.weights[t] * size_weight(truth, self.options.large, self.options.still)
         return {"motion": self.compare(clean, truth, weight), "clean": clean[:count]}
 
     def _from_nothing(self, start: torch.Tensor, context: list[torch.Tensor]) -> torch.Tensor:

@@ -20,6 +20,7 @@ class LossOptions:
     photometric: bool = False
     drop_condition: float = 0.1  # share of samples that do not see their picture
     large: float = 0.0  # motions of more network units (RMS) count less, 0 = all alike
+    still: float = 1.0  # how much more a still picture counts, where large is not 0
     draws: int = 4  # noisy states per picture: the encoder is dear, the denoiser cheap
     regression: bool = False
     slope_share: float = 0.0  # of the error's slope along a curve; 0 = dense fields, plain errors
@@ -39,11 +40,15 @@ def time_weight(alphas_cumprod: torch.Tensor, kind: str) -> torch.Tensor:
     return torch.ones_like(snr)
 
 
-def size_weight(truth: torch.Tensor, large: float) -> torch.Tensor:
-    """Weight of each sample by the size of its motion: else a few huge ones rule the loss."""
+def size_weight(truth: torch.Tensor, large: float, still: float = 1.0) -> torch.Tensor:
+    """Weight of each sample by the size of its motion: else a few huge ones rule the loss.
+
+    `still` multiplies that of pictures without motion: to leave those alone comes first.
+    """
     if large == 0.0:
         return torch.ones_like(truth.flatten(1)[:, 0])
-    return 2 / (1 + truth.square().flatten(1).mean(dim=1) / large**2)
+    size = truth.square().flatten(1).mean(dim=1)
+    return torch.where(size == 0, still, 1.0) * 2 / (1 + size / large**2)
 
 
 def state_loss(out: torch.Tensor, truth: torch.Tensor, weight: torch.Tensor) -> torch.Tensor:

@@ -84,6 +84,8 @@ def make_parser() -> argparse.ArgumentParser:
     loss.add_argument("--drop-condition", type=float, default=0.1)
     loss.add_argument("--draws", type=int, help="noisy states per picture")
     loss.add_argument("--large", type=float, help="RMS network units from which motions count less")
+    loss.add_argument("--still", type=float, default=1.0,
+                      help="how much more pictures without motion count")
     loss.add_argument("--slope-share", type=float,
                       help="weight of a curve's slopes beside its values; 0: squared error only")
     pace = parser.add_argument_group("optimisation")
@@ -175,8 +177,10 @@ class Trainer:
         self.net_name, net = new_net(options)
         self.net = net.to(place.device)
         loss = LossOptions(
-            options.weight, options.photometric, options.drop_condition, options.large,
-            options.draws, options.objective == "regression", options.slope_share,
+            weight=options.weight, photometric=options.photometric,
+            drop_condition=options.drop_condition, large=options.large, still=options.still,
+            draws=options.draws, regression=options.objective == "regression",
+            slope_share=options.slope_share,
         )
         self.learner = make_learner(self.net, loss).to(place.device)
         self.optimizer = torch.optim.AdamW(

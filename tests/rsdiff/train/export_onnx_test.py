@@ -35,6 +35,23 @@ def lively_net(config: CompactConfig) -> CompactNet:
     return net.eval()
 
 
+SHIPPED = Path(export_onnx.__file__).parents[1] / "models" / "compact"
+
+
+class Shipped(unittest.TestCase):
+    def test_the_shipped_networks_are_those_of_the_shipped_checkpoint(self):
+        net, _ = checkpoint.load_averaged(SHIPPED / "checkpoint.pt")
+        encoder = (SHIPPED / "encoder.onnx").read_bytes()
+        inputs = [export_onnx.encoder_inputs()]
+        self.assertLess(export_onnx.largest_difference(encoder, net.encoder, inputs),
+                        export_onnx.TOLERANCE)
+        for batch in export_onnx.BATCH_SIZES:
+            data = (SHIPPED / f"denoiser_{batch}.onnx").read_bytes()
+            inputs = [export_onnx.denoiser_inputs(net, batch)]
+            self.assertLess(export_onnx.largest_difference(data, net.denoiser, inputs),
+                            export_onnx.TOLERANCE)
+
+
 class Calibration(unittest.TestCase):
     def test_samples_of_the_truths_own_distribution_need_no_scale(self):
         generator = torch.Generator().manual_seed(1)

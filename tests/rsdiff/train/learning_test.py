@@ -79,6 +79,7 @@ class Losses(unittest.TestCase):
         truth = torch.stack([torch.zeros(3, 4, 1), torch.ones(3, 4, 1), 3 * torch.ones(3, 4, 1)])
         torch.testing.assert_close(size_weight(truth, 1.0), torch.tensor([2.0, 1.0, 0.2]))
         self.assertEqual(size_weight(truth, 0.0).tolist(), [1.0] * 3)
+        torch.testing.assert_close(size_weight(truth, 1.0, 2.5), torch.tensor([5.0, 1.0, 0.2]))
 
     def test_the_second_loss_is_rescaled_to_equal_the_first(self):
         first, second = (torch.tensor(v, requires_grad=True) for v in (2.0, 0.5))
