@@ -2,8 +2,10 @@
 #include "evaluation/for_each_item.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <exception>
 #include <mutex>
+#include <new>
 #include <utility>
 #include <vector>
 
@@ -31,16 +33,16 @@ Status ForEachItem(int count, int jobs, const MethodFactory& factory,
                    const EvaluationProgress& progress) {
   const int threads = std::clamp(jobs, 1, std::max(count, 1));
   std::vector<MethodSet> sets;
+  sets.reserve(static_cast<std::size_t>(threads));
   std::vector<MethodSet*> idle;
+  idle.reserve(static_cast<std::size_t>(threads));
   for (int i = 0; i < threads; ++i) {
     auto methods = factory();
     if (!methods) {
       return Propagate(methods.error());
     }
     sets.push_back(std::move(*methods));
-  }
-  for (MethodSet& set : sets) {
-    idle.push_back(&set);
+    idle.push_back(&sets.back());  // `sets` does not grow beyond what it has reserved
   }
   std::mutex mutex;  // guards `idle`, `done`, `stopped`, and calls to `failed` and `progress`
   std::int64_t done = 0;
