@@ -107,8 +107,8 @@ TEST_F(FieldFilesTest, SpreadOfOneSampleIsInfiniteEverywhere) {
   const MotionField field = UnevenField();
   const std::vector<float> unknown(field.vertices().size(), std::numeric_limits<float>::infinity());
   ASSERT_TRUE(WriteFieldFiles(files_, field, unknown, workers_));
-  for (const float value :
-       rsstab::testing::ReadNpz(ReadBytes(files_.npz)).at("spread.npy").values) {
+  const auto arrays = rsstab::testing::ReadNpz(ReadBytes(files_.npz));
+  for (const float value : arrays.at("spread.npy").values) {
     ASSERT_TRUE(std::isinf(value));
   }
 }
