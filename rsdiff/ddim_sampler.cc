@@ -9,25 +9,50 @@
 namespace rsstab::rsdiff {
 namespace {
 
-// Coefficients that take a prediction to x0 = prediction * of_prediction + state * of_state.
-struct X0Coefficients {
-  double of_prediction;
-  double of_state;
+// The numbers of one time step, rounded to float32 as published checkpoints store them. All the
+// arithmetic on states below is float32 in the published order: a network may amplify rounding many
+// thousandfold, and fields then agree with the published ones only where every bit does.
+struct StepTable {
+  float signal_root;      // sqrt(a)
+  float noise_root;       // sqrt(1 - a)
+  float reciprocal_root;  // sqrt(1 / a)
+  float ratio_root;       // sqrt(1 / a - 1)
+
+  explicit StepTable(double signal)
+      : signal_root(static_cast<float>(std::sqrt(signal))),
+        noise_root(static_cast<float>(std::sqrt(1.0 - signal))),
+        reciprocal_root(static_cast<float>(std::sqrt(1.0 / signal))),
+        ratio_root(static_cast<float>(std::sqrt(1.0 / signal - 1.0))) {}
+
+  [[nodiscard]] float CleanState(Objective objective, float state, float prediction) const {
+    switch (objective) {
+      case Objective::kX0:
+        break;
+      case Objective::kNoise:
+        return reciprocal_root * state - ratio_root * prediction;
+      case Objective::kV:
+        return signal_root * state - noise_root * prediction;
+    }
+    return prediction;
+  }
+  [[nodiscard]] float Noise(float state, float x0) const {
+    return (reciprocal_root * state - x0) / ratio_root;
+  }
 };
 
-X0Coefficients CoefficientsOf(Objective objective, double signal) {
-  const double a = std::sqrt(signal);
-  const double s = std::sqrt(1.0 - signal);
-  switch (objective) {
-    case Objective::kX0:
-      return {1.0, 0.0};
-    case Objective::kNoise:  // x = a x0 + s noise
-      return {-s / a, 1.0 / a};
-    case Objective::kV:  // v = a noise - s x0
-      return {-s, a};
+// How the next state is put together (Song et al. 2021, eq. 12 and 16).
+struct NextState {
+  float of_x0;
+  float of_noise;
+  float of_fresh;  // sigma: the DDPM deviation between the two times, times eta
+
+  NextState(float signal, float next_signal, float eta)
+      : of_x0(std::sqrt(next_signal)),
+        of_fresh(eta * std::sqrt((1.0F - signal / next_signal) * (1.0F - next_signal) /
+                                 (1.0F - signal))) {
+    of_noise = std::sqrt(std::max(0.0F, 1.0F - next_signal - of_fresh * of_fresh));
   }
-  return {1.0, 0.0};
-}
+};
 
 // Standard deviation over all elements (of a sample, hence n - 1).
 double Deviation(std::span<const float> values) {
@@ -119,43 +144,40 @@ Result<Tensor> DdimSampler::Sample(Denoiser& denoiser, const DdimOptions& option
                 denoiser.StateShape().channels, denoiser.StateShape().rows,
                 denoiser.StateShape().columns);
   }
+  const auto clip_range = static_cast<float>(options.clip_range);
   Tensor fresh(states.batch, states.shape);
   for (const auto& [t, next_t] : DdimTimePairs(schedule_.steps(), options.steps)) {
     const auto prediction = PredictGuided(denoiser, options, states, t);
     if (!prediction) {
       return Propagate(prediction.error(), fmt::format("sampling, time step {}", t));
     }
-    const double signal = schedule_.Signal(t);
-    const X0Coefficients x0_of = CoefficientsOf(objective_, signal);
+    const StepTable table(schedule_.Signal(t));
     const bool is_last = next_t < 0;
-    const double next_signal = is_last ? 1.0 : schedule_.Signal(next_t);
-    // Song et al. 2021, eq. 16 and 12. sigma is the DDPM deviation between the two times, times
-    // eta.
-    const double sigma = options.eta * std::sqrt((1.0 - signal / next_signal) *
-                                                 (1.0 - next_signal) / (1.0 - signal));
-    const double of_noise = std::sqrt(std::max(0.0, 1.0 - next_signal - sigma * sigma));
-    if (!is_last && sigma > 0.0) {
+    const NextState next(static_cast<float>(schedule_.Signal(t)),
+                         is_last ? 1.0F : static_cast<float>(schedule_.Signal(next_t)),
+                         static_cast<float>(options.eta));
+    const bool is_noisy = !is_last && next.of_fresh > 0.0F;
+    if (is_noisy) {
       noise.Fill(fresh);
     }
     for (std::size_t i = 0; i < states.values.size(); ++i) {
-      const auto state = static_cast<double>(states.values[i]);
-      double x0 =
-          x0_of.of_prediction * static_cast<double>(prediction->values[i]) + x0_of.of_state * state;
+      float& state = states.values[i];
+      float x0 = table.CleanState(objective_, state, prediction->values[i]);
       if (!std::isfinite(x0)) {
         return Fail(ErrorCode::kUntrustworthy,
                     "sampling, time step {}: the network returned a number that is not finite", t);
       }
       if (options.clip) {
-        x0 = std::clamp(x0, -options.clip_range, options.clip_range);
+        x0 = std::clamp(x0, -clip_range, clip_range);
       }
       if (is_last) {
-        states.values[i] = static_cast<float>(x0);
+        state = x0;
         continue;
       }
-      const double estimated_noise = (state - std::sqrt(signal) * x0) / std::sqrt(1.0 - signal);
-      states.values[i] =
-          static_cast<float>(std::sqrt(next_signal) * x0 + of_noise * estimated_noise +
-                             sigma * static_cast<double>(fresh.values[i]));
+      state = x0 * next.of_x0 + next.of_noise * table.Noise(state, x0);
+      if (is_noisy) {
+        state += next.of_fresh * fresh.values[i];
+      }
     }
   }
   return states;

@@ -83,7 +83,7 @@ OptionTable<Options> BuildTable() {
                              std::numeric_limits<std::int64_t>::max()),
       "Where the noise starts, the same for every picture.");
   add(ChoiceOption<Options, std::string>("device", &Options::device, DeviceChoices()),
-      "Where the network runs; all but cpu need an OpenCV that was built for it.");
+      "Where the network runs; all but auto and cpu need an OpenCV (or libtorch) built for it.");
 
   group = "Running";
   add(IntegerOption<Options>("threads", "N", &Options::threads, 0, 1024),

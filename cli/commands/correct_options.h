@@ -31,7 +31,7 @@ struct CorrectOptions {
   std::optional<double> guidance;  // empty: as the model says
   std::optional<double> eta;       // empty: as the model says
   std::uint64_t seed = 0;
-  std::string device = "cpu";
+  std::string device = "auto";
   int threads = 0;  // 0 = one per processor
 };
 

@@ -29,7 +29,7 @@ struct EvaluateOptions {
   std::string methods = "none,regression,sample,mean";  // regression only with its model
   std::string model;                                    // empty: the default one
   std::string regression_model;
-  std::string device = "cpu";
+  std::string device = "auto";
   int samples = 8;               // of the method "mean"
   int calibration_samples = 16;  // 0 = leave the calibration out
   int steps = 0;                 // 0 = the model's default

@@ -8,12 +8,17 @@
 namespace rsstab::rsdiff {
 
 // Names of the places where a network may run.
-inline constexpr std::array<const char*, 4> kDeviceNames = {"cpu", "cuda", "opencl", "openvino"};
+inline constexpr std::array<const char*, 5> kDeviceNames = {"auto", "cpu", "cuda", "opencl",
+                                                            "openvino"};
 
 // Where a network runs.
 struct BackendOptions {
-  // One of kDeviceNames. "cpu" always works, the others where the network library has them.
-  std::string device = "cpu";
+  // One of kDeviceNames. "cpu" always works, the named others where the network library has them.
+  // "auto" is CUDA for libtorch where it has it (those networks are big), else the CPU.
+  std::string device = "auto";
+  // On the CPU, libtorch only: its threads, 0 = as it likes. OpenCV has one number per process,
+  // cv::setNumThreads.
+  int num_threads = 0;
 };
 
 }  // namespace rsstab::rsdiff

@@ -25,7 +25,8 @@ struct Device {
   Backend backend;
   Target target;
 };
-constexpr std::array<Device, 4> kDevices = {{
+constexpr std::array<Device, 5> kDevices = {{
+    {"auto", cv::dnn::DNN_BACKEND_OPENCV, cv::dnn::DNN_TARGET_CPU},
     {"cpu", cv::dnn::DNN_BACKEND_OPENCV, cv::dnn::DNN_TARGET_CPU},
     {"cuda", cv::dnn::DNN_BACKEND_CUDA, cv::dnn::DNN_TARGET_CUDA},
     {"opencl", cv::dnn::DNN_BACKEND_OPENCV, cv::dnn::DNN_TARGET_OPENCL},

@@ -10,8 +10,8 @@ agree with the published ones to the last bit when the network's outputs do.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Callable, Dict, List, Optional, Tuple
 
 import torch
 from torch import Tensor
@@ -43,7 +43,7 @@ class NoiseSchedule:
     def steps(self) -> int:
         return self.betas.numel()
 
-    def tables(self, objective: str) -> Dict[str, Tensor]:
+    def tables(self, objective: str) -> dict[str, Tensor]:
         """All that follows from the betas, float32, by the names that published checkpoints use.
 
         `loss_weight` makes the squared error of every objective count as that of the noise.
@@ -71,7 +71,7 @@ class NoiseSchedule:
         return {name: values.float() for name, values in tables.items()}
 
 
-def time_pairs(total: int, steps: int) -> List[Tuple[int, int]]:
+def time_pairs(total: int, steps: int) -> list[tuple[int, int]]:
     """(from, to) of each DDIM step: `steps` + 1 integers from T-1 down to -1, the clean state."""
     times = torch.linspace(-1, total - 1, steps + 1).int().tolist()[::-1]
     return list(zip(times[:-1], times[1:]))
@@ -88,7 +88,7 @@ def guided(conditional: Tensor, unconditional: Tensor, scale: float, rescale: fl
 
 
 def clean_state(
-    objective: str, x: Tensor, output: Tensor, tables: Dict[str, Tensor], t: int
+    objective: str, x: Tensor, output: Tensor, tables: dict[str, Tensor], t: int
 ) -> Tensor:
     """x0 from the network's output for x at time t."""
     if objective == "x0":
@@ -108,7 +108,7 @@ def ddim_sample(
     objective: str = "x0",
     eta: float = 0.0,
     clip_range: float = 1.0,
-    generator: Optional[torch.Generator] = None,
+    generator: torch.Generator | None = None,
 ) -> Tensor:
     """The clean state reached from pure noise x (N x ...).
 

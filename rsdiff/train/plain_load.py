@@ -64,8 +64,10 @@ class _Unpickler(pickle.Unpickler):
         _, dtype, key, _, count = saved
         if key not in self.storages:
             data = bytearray(self.archive.read(self.folder + key))
+            if len(data) != count * torch.empty(0, dtype=dtype).element_size():
+                raise pickle.UnpicklingError(f"storage {key} is not {count} numbers long")
             flat = torch.frombuffer(data, dtype=dtype) if data else torch.empty(0, dtype=dtype)
-            self.storages[key] = flat[:count]
+            self.storages[key] = flat
         return self.storages[key]
 
 
@@ -79,6 +81,5 @@ def load_plain(path: Path) -> Any:
             return _Unpickler(archive, tables[0]).load()
     except FileNotFoundError:
         raise SystemExit(f"{path}: no such checkpoint") from None
-    except (pickle.UnpicklingError, zipfile.BadZipFile, KeyError, TypeError, ValueError,
-            RuntimeError, EOFError) as error:
+    except Exception as error:  # damaged pickles raise nearly anything
         raise SystemExit(f"{path}: no checkpoint of plain data: {error}") from None

@@ -13,7 +13,8 @@ the image only is computed once per image by `encode`; `denoise` is one step of 
 from __future__ import annotations
 
 import math
-from typing import List, Sequence
+from collections.abc import Sequence
+from typing import Any
 
 import torch
 import torch.nn.functional as F
@@ -26,7 +27,6 @@ ATTENTION_HEADS = 4
 ATTENTION_HEAD_WIDTH = 32
 PATCH_HEADS = 2
 PATCH_ROWS = 4
-FIELD_SIZE = 64
 
 
 class RMSNorm(nn.Module):
@@ -41,7 +41,7 @@ class RMSNorm(nn.Module):
         return F.normalize(x, dim=1) * self.g * self.scale
 
 
-def split_heads(x: Tensor, heads: int, head_width: int) -> List[Tensor]:
+def split_heads(x: Tensor, heads: int, head_width: int) -> list[Tensor]:
     """q, k and v (N x heads x head_width x pixels) of a 1x1 convolution's output."""
     size = [x.shape[0], heads, head_width, x.shape[2] * x.shape[3]]
     return [part.reshape(size) for part in x.chunk(3, dim=1)]
@@ -185,8 +185,9 @@ class ReferenceUNet(nn.Module):
     """The published denoiser. `forward` is one call; samplers use `encode` and `denoise`."""
 
     def __init__(
-        self, width: int = 64, multipliers: Sequence[int] = (1, 2, 4, 8), field_size: int = FIELD_SIZE
+        self, width: int = 64, multipliers: Sequence[int] = (1, 2, 4, 8), field_size: int = 64
     ) -> None:
+        """Defaults are the published ones; `field_size` matters to the unused `pe` only."""
         super().__init__()
         embedding = 4 * width
         both = 2 * embedding
@@ -246,12 +247,12 @@ class ReferenceUNet(nn.Module):
         self.final_conv = nn.Conv2d(width, 2, 1)
 
     @torch.jit.export
-    def encode(self, image: Tensor) -> List[Tensor]:
+    def encode(self, image: Tensor) -> list[Tensor]:
         """The image's features at every level of the way down, the middle, the way up, the end."""
         y = self.init_conv_1(image)
         first = y
-        features: List[Tensor] = []
-        skips: List[Tensor] = []
+        features: list[Tensor] = []
+        skips: list[Tensor] = []
         for level in self.downs:
             features.append(y)
             skips.append(y)
@@ -264,7 +265,7 @@ class ReferenceUNet(nn.Module):
         return features
 
     @torch.jit.export
-    def denoise(self, x: Tensor, time: Tensor, features: List[Tensor], drop: Tensor) -> Tensor:
+    def denoise(self, x: Tensor, time: Tensor, features: list[Tensor], drop: Tensor) -> Tensor:
         """Network output for the noisy field x (N x 2 x H x W) at time steps `time` (N).
 
         `features` come from `encode`, of N images or of one that all samples share. Where `drop`
@@ -277,7 +278,7 @@ class ReferenceUNet(nn.Module):
         embedding = torch.cat((self.time_mlp(time.to(x.dtype)), self.classes_mlp(classes)), dim=-1)
         x = self.init_conv_1(self.init_conv(x))
         first = x
-        skips: List[Tensor] = []
+        skips: list[Tensor] = []
         used = 0
         for level in self.downs:
             x = level[0](x, features[used], embedding)
@@ -310,11 +311,12 @@ class ReferenceUNet(nn.Module):
 class ReferenceDiffusion(nn.Module):
     """The network with the schedule's tables, as a published checkpoint stores them."""
 
-    def __init__(self, schedule: NoiseSchedule, objective: str = "x0") -> None:
+    def __init__(self, schedule: NoiseSchedule, objective: str = "x0", **network: Any) -> None:
+        """`network`: what ReferenceUNet takes."""
         super().__init__()
         for name, values in schedule.tables(objective).items():
             self.register_buffer(name, values)
-        self.model = ReferenceUNet()
+        self.model = ReferenceUNet(**network)
 
 
 def field_to_pixels(field: Tensor) -> Tensor:

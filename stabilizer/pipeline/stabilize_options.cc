@@ -138,7 +138,7 @@ OptionTable<StabilizeOptions> BuildTable() {
   add(RealOption("rs-strength", "SHARE", &O::rs_strength, {0.0, 2.0}), OptionStage::kAnalysis,
       "Share of the estimated motion that is corrected.");
   add(ChoiceOption<O, std::string>("device", &O::device, DeviceChoices()), OptionStage::kAnalysis,
-      "Where the network runs; all but cpu need an OpenCV that was built for it.");
+      "Where the network runs; all but auto and cpu need an OpenCV (or libtorch) built for it.");
 
   group = "Stabilization";
   add(RealOption("smoothness", "S", &O::smoothness_s, {0.0, 10.0}), OptionStage::kAnalysis,

@@ -43,7 +43,7 @@ struct StabilizeOptions {
   int samples = 8;           // drawn for each frame; their mean is taken
   int sampling_steps = 0;    // DDIM steps; 0 = as the model says
   double rs_strength = 1.0;  // share of the estimated motion that is corrected
-  std::string device = "cpu";
+  std::string device = "auto";
 
   double smoothness_s = 1.0;    // time constant of the smooth path; 0 = only rolling shutter
   bool tripod = false;          // hold one view for each scene

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the unittest file that is named; exits 77, a skip, where a package it needs is missing."""
+"""Runs the unittest file that is named.
+
+Exits 77, a skip, where a package it needs is missing or every test was skipped.
+"""
 
 import importlib.util
 import sys
@@ -19,7 +22,9 @@ def main() -> int:
     spec.loader.exec_module(module)
     suite = unittest.defaultTestLoader.loadTestsFromModule(module)
     result = unittest.TextTestRunner(verbosity=2).run(suite)
-    return 0 if result.wasSuccessful() and result.testsRun else 1
+    if not result.wasSuccessful() or not (result.testsRun or result.skipped):
+        return 1
+    return 77 if len(result.skipped) >= result.testsRun else 0
 
 
 if __name__ == "__main__":
