@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Builds the project with warnings as errors and runs the whole test suite, then the suites that
 # handle foreign bytes and raw pixels once more under AddressSanitizer and
-# UndefinedBehaviorSanitizer. The last line counts the results.
+# UndefinedBehaviorSanitizer, and those of the libtorch backend in a build that has it. The last line
+# counts the results.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 source cmake/debian_build.sh
@@ -10,7 +11,7 @@ source cmake/debian_build.sh
 # What handles foreign bytes, raw pixels and threads; numerics gain nothing from a second, slow run.
 sanitized_tests='^igf/(base/|.*_(axes|clock|field|log|parser|reader|track)_test)'
 sanitized_tests+='|^cli/(images/|media/|[a-z_]+_test)|^robustness/'
-sanitized_tests+='|^stabilizer/(analysis_file|backward_map|plane_warper)'
+sanitized_tests+='|^rsdiff/(backend/)?[a-z_]+_test|^stabilizer/(analysis_file|backward_map|plane_warper)'
 
 passed=0
 failed=0
@@ -68,4 +69,6 @@ run_tests release
 step "build (address and undefined-behaviour sanitizers)" build_preset sanitize all \
   "-DRSSTAB_TEST_FILTER=$sanitized_tests"
 run_tests sanitize
+step "build (release with libtorch)" build_preset torch all
+run_tests torch
 finish
