@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Builds the project with warnings as errors and runs the whole test suite, then the suites that
 # handle foreign bytes and raw pixels once more under AddressSanitizer and
-# UndefinedBehaviorSanitizer, and those of the libtorch backend in a build that has it. The last line
-# counts the results.
+# UndefinedBehaviorSanitizer, then those of the optional libtorch backend. The last line counts the
+# results.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 source cmake/debian_build.sh
@@ -69,6 +69,6 @@ run_tests release
 step "build (address and undefined-behaviour sanitizers)" build_preset sanitize all \
   "-DRSSTAB_TEST_FILTER=$sanitized_tests"
 run_tests sanitize
-step "build (release with libtorch)" build_preset torch all
+step "build (libtorch)" build_preset torch all
 run_tests torch
 finish

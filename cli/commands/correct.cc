@@ -27,7 +27,8 @@ Result<pipeline::ImageCorrector> LoadCorrector(const CorrectOptions& options,
   if (!model_file) {
     return Propagate(model_file.error());
   }
-  auto estimator = rsdiff::SingleImageEstimator::Load(*model_file, {.device = options.device});
+  auto estimator = rsdiff::SingleImageEstimator::Load(
+      *model_file, {.device = options.device, .num_threads = options.threads});
   if (!estimator) {
     return Propagate(std::move(estimator.error()));
   }

@@ -162,7 +162,8 @@ Result<RsSelection> SelectDiffusion(const StabilizeOptions& options, const Camer
   if (!model_file) {
     return Propagate(model_file.error());
   }
-  auto estimator = rsdiff::SingleImageEstimator::Load(*model_file, {.device = options.device});
+  auto estimator = rsdiff::SingleImageEstimator::Load(
+      *model_file, {.device = options.device, .num_threads = options.num_threads});
   if (!estimator) {
     return Propagate(std::move(estimator.error()));
   }
