@@ -17,7 +17,8 @@ install(FILES ${PROJECT_BINARY_DIR}/rsstabConfig.cmake ${PROJECT_BINARY_DIR}/rss
 # Headers that need Ceres or carry an implementation stay inside.
 install(DIRECTORY igf rsdiff stabilizer DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rsstab
   COMPONENT development FILES_MATCHING PATTERN "*.h"
-  PATTERN "street" EXCLUDE PATTERN "*_residuals.h" EXCLUDE PATTERN "*_detail.h" EXCLUDE)
+  PATTERN "street" EXCLUDE PATTERN "models" EXCLUDE PATTERN "train" EXCLUDE
+  PATTERN "*_residuals.h" EXCLUDE PATTERN "*_detail.h" EXCLUDE)
 
 set(rsstab_docs ${PROJECT_BINARY_DIR}/generated/docs)
 file(MAKE_DIRECTORY ${rsstab_docs})
