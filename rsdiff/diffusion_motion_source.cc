@@ -35,7 +35,9 @@ Result<RsMotion> DiffusionMotionSource::EstimateMotion(const FrameContext& frame
   for (Eigen::Vector2f& displacement : motion->field.vertices()) {
     displacement *= static_cast<float>(options_.strength);
   }
-  return RsMotion{std::move(motion->field), options_.strength * motion->spread_px};
+  // No motion at all is not uncertain, not even where one sample says nothing of its error.
+  const double spread_px = options_.strength > 0.0 ? options_.strength * motion->spread_px : 0.0;
+  return RsMotion{std::move(motion->field), spread_px};
 }
 
 }  // namespace rsstab::rsdiff

@@ -68,6 +68,9 @@ TEST(DiffusionMotionSource, StrengthScalesTheFieldAndItsSpread) {
   EXPECT_NEAR(weak.field.MaxLength(), 0.5 * full.field.MaxLength(), 1e-4);
   EXPECT_NEAR(weak.spread_px, 0.5 * full.spread_px, 1e-6);
   EXPECT_EQ(Estimate(none, Stripes(0), 0).field.MaxLength(), 0.0);
+  auto lone = *DiffusionMotionSource::Create(TinyEstimator(),
+                                             {.sampling = {.samples = 1}, .strength = 0.0});
+  EXPECT_EQ(Estimate(lone, Stripes(0), 0).spread_px, 0.0);
 }
 
 TEST(DiffusionMotionSource, RefusesWhatMakesNoSense) {
