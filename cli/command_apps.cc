@@ -126,7 +126,8 @@ std::vector<CommandText> BuildTexts() {
        "[OPTIONS] IMAGE... -o OUT",
        "takes the rolling shutter out of photographs",
        "Estimates from each picture alone how the camera moved while it was read out, and undoes "
-       "that. Size, bit depth, transparency and metadata stay; the picture is enlarged just so far "
+       "what it can tell. Size, bit depth, transparency and metadata stay; the picture is enlarged "
+       "just so far "
        "that no border shows. Rows are those of the stored picture, which are the sensor's: a "
        "picture whose pixels were turned afterwards cannot be corrected.",
        {{"rs-stabilize correct train.jpg -o upright.jpg", "one picture"},
