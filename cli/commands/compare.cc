@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "cli/media/video_reader.h"
 #include "igf/camera_profile_reader.h"
@@ -43,6 +44,7 @@ Result<TruthFiles> FindTruth(const fs::path& named) {
 struct Source {
   std::unique_ptr<media::VideoReader> reader;
   std::optional<media::VideoFrame> frame;
+  std::int64_t frames = 0;  // read so far
 
   [[nodiscard]] Status Next() {
     auto next = reader->Read();
@@ -50,6 +52,7 @@ struct Source {
       return Propagate(next.error(), reader->info().path);
     }
     frame = std::move(*next);
+    frames += frame ? 1 : 0;
     return {};
   }
 };
@@ -59,7 +62,7 @@ Result<Source> OpenSource(const std::string& path, int threads, const Logger& lo
   if (!reader) {
     return Propagate(reader.error());
   }
-  return Source{std::move(*reader), std::nullopt};
+  return Source{std::move(*reader), std::nullopt, 0};
 }
 
 // The twin, and what is measured against it.
@@ -89,17 +92,23 @@ Result<Truth> OpenTruth(const CompareOptions& options, const Logger& logger) {
   return Truth{std::move(*twin), *meter, *meter};
 }
 
-Status MeasureTruth(Truth& truth, const Source& input, const Source& output) {
-  if (Status read = truth.twin.Next(); !read || !truth.twin.frame) {
-    return read;
+// A clip to be measured for itself.
+struct Subject {
+  Source* source = nullptr;
+  stabilizer::ClipMeter* meter = nullptr;
+  stabilizer::TruthMeter* truth = nullptr;  // null without a twin
+};
+
+Status MeasureSubject(const Subject& subject, const Source* twin) {
+  if (!subject.source->frame) {
+    return {};
   }
-  const FrameView twin = truth.twin.frame->frame.View();
-  if (input.frame) {
-    if (Status pushed = truth.input.Push(input.frame->frame.View(), twin); !pushed) {
-      return pushed;
-    }
+  const FrameView picture = subject.source->frame->frame.View();
+  if (Status pushed = subject.meter->Push(picture); !pushed) {
+    return pushed;
   }
-  return output.frame ? truth.output.Push(output.frame->frame.View(), twin) : Status{};
+  return twin != nullptr && twin->frame ? subject.truth->Push(picture, twin->frame->frame.View())
+                                        : Status{};
 }
 
 CompareReport::Clip Describe(const media::VideoInfo& info, const stabilizer::ClipMeter& meter) {
@@ -114,14 +123,18 @@ CompareReport::Clip Describe(const media::VideoInfo& info, const stabilizer::Cli
 }  // namespace
 
 Result<CompareReport> CompareClips(const CompareOptions& options, const Logger& logger,
-                                   const CompareProgress& progress) {
+                                   const CompareProgress& progress, CompareScope scope) {
   auto input = OpenSource(options.input, options.threads, logger);
   if (!input) {
     return Propagate(input.error());
   }
-  auto output = OpenSource(options.output, options.threads, logger);
-  if (!output) {
-    return Propagate(output.error());
+  std::optional<Source> output;
+  if (scope != CompareScope::kInputOnly) {
+    auto opened = OpenSource(options.output, options.threads, logger);
+    if (!opened) {
+      return Propagate(opened.error());
+    }
+    output.emplace(std::move(*opened));
   }
   std::optional<Truth> truth;
   if (!options.truth.empty()) {
@@ -134,29 +147,39 @@ Result<CompareReport> CompareClips(const CompareOptions& options, const Logger& 
   stabilizer::ClipMeter input_meter;
   stabilizer::ClipMeter output_meter;
   stabilizer::PairMeter pair_meter;
-  const std::int64_t expected =
-      std::max(input->reader->info().frame_count, output->reader->info().frame_count);
+  std::vector<Source*> sources = {&*input};
+  std::vector<Subject> subjects;
+  if (scope != CompareScope::kOutputOnly) {
+    subjects.push_back({&*input, &input_meter, truth ? &truth->input : nullptr});
+  }
+  if (output) {
+    sources.push_back(&*output);
+    subjects.push_back({&*output, &output_meter, truth ? &truth->output : nullptr});
+  }
+  std::int64_t expected = 0;
+  for (const Source* source : sources) {
+    expected = std::max(expected, source->reader->info().frame_count);
+  }
+  if (truth) {
+    sources.push_back(&truth->twin);
+  }
   for (std::int64_t index = 0;; ++index) {
-    for (Source* source : {&*input, &*output}) {
+    for (Source* source : sources) {
       if (Status read = source->Next(); !read) {
         return Propagate(read.error());
       }
     }
-    if (!input->frame && !output->frame) {
+    if (!input->frame && !(output && output->frame)) {
       break;
     }
     Status pushed;
-    if (input->frame) {
-      pushed = input_meter.Push(input->frame->frame.View());
+    for (const Subject& subject : subjects) {
+      if (pushed) {
+        pushed = MeasureSubject(subject, truth ? &truth->twin : nullptr);
+      }
     }
-    if (pushed && output->frame) {
-      pushed = output_meter.Push(output->frame->frame.View());
-    }
-    if (pushed && input->frame && output->frame) {
+    if (pushed && input->frame && output && output->frame) {
       pushed = pair_meter.Push(input->frame->frame.View(), output->frame->frame.View());
-    }
-    if (pushed && truth) {
-      pushed = MeasureTruth(*truth, *input, *output);
     }
     if (!pushed) {
       return Propagate(pushed.error());
@@ -165,16 +188,18 @@ Result<CompareReport> CompareClips(const CompareOptions& options, const Logger& 
       return Fail(ErrorCode::kCancelled, "Stopped after {} frames, as asked.", index + 1);
     }
   }
-  CompareReport report{Describe(input->reader->info(), input_meter),
-                       Describe(output->reader->info(), output_meter), pair_meter.Measure()};
-  if (truth) {
-    report.input.truth = truth->input.Measure();
-    report.output.truth = truth->output.Measure();
+  CompareReport report;
+  for (const Subject& subject : subjects) {
+    CompareReport::Clip& clip = subject.source == &*input ? report.input : report.output;
+    clip = Describe(subject.source->reader->info(), *subject.meter);
+    if (truth) {
+      clip.truth = subject.truth->Measure();
+    }
   }
-  if (report.input.metrics.frames != report.output.metrics.frames) {
+  report.pair = pair_meter.Measure();
+  if (output && input->frames != output->frames) {
     logger->warn("compare: {} has {} frames, {} has {}; frames were paired by their number",
-                 report.input.path, report.input.metrics.frames, report.output.path,
-                 report.output.metrics.frames);
+                 options.input, input->frames, options.output, output->frames);
   }
   return report;
 }

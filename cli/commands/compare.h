@@ -17,6 +17,13 @@
 
 namespace rsstab::cli {
 
+// What is measured; both clips are read where both are needed.
+enum class CompareScope {
+  kBoth,
+  kInputOnly,   // the input as it is; no output is opened
+  kOutputOnly,  // the output, and what it took from the input
+};
+
 struct CompareReport {
   struct Clip {
     std::string path;
@@ -35,13 +42,13 @@ struct CompareReport {
 using CompareProgress = std::function<bool(std::int64_t frames_done, std::int64_t frames)>;
 
 // Measures both clips in one go. Frames belong together by their number; where one clip is longer,
-// its further frames count for itself only, with a warning. Memory does not grow with the clip but
-// for about 100 bytes a frame.
-// Errors: those of the reader, naming the clip; kNotFound for a truth without its files;
-// kCancelled.
+// its further frames count for itself only, with a warning. What `scope` leaves out keeps its
+// default. Memory does not grow with the clip but for about 100 bytes a frame. Errors: those of the
+// reader, naming the clip; kNotFound for a truth without its files; kCancelled.
 [[nodiscard]] Result<CompareReport> CompareClips(const CompareOptions& options,
                                                  const Logger& logger,
-                                                 const CompareProgress& progress = {});
+                                                 const CompareProgress& progress = {},
+                                                 CompareScope scope = CompareScope::kBoth);
 
 // The report as a table for people, and as one JSON object (figures that could not be measured are
 // null). Both end with a line feed.

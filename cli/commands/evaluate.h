@@ -4,10 +4,10 @@
 
 #include <ostream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "cli/commands/evaluate_options.h"
+#include "cli/commands/evaluation_header.h"
 #include "evaluation/image_pairs.h"
 #include "evaluation/score_summary.h"
 #include "evaluation/skew_response.h"
@@ -16,18 +16,6 @@
 #include "igf/base/result.h"
 
 namespace rsstab::cli {
-
-struct EvaluationSetting {
-  std::string name;  // of the option, without dashes
-  std::string value;
-  bool is_default = true;
-};
-
-// What a report says beside its figures.
-struct EvaluationHeader {
-  std::vector<EvaluationSetting> settings;
-  std::vector<std::pair<std::string, Error>> failures;  // what was left out, and why
-};
 
 struct SyntheticReport {
   EvaluationHeader header;
