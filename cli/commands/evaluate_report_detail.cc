@@ -7,7 +7,14 @@
 
 namespace rsstab::cli::detail {
 
+using evaluation::Interval;
+
 Json OrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json ToJson(const Interval& interval) { return {OrNull(interval.low), OrNull(interval.high)}; }
+
+std::string IntervalText(const Interval& interval, int digits) {
+  return "[" + Cell(interval.low, 0, digits) + ", " + Cell(interval.high, 0, digits) + "]";
+}
 
 std::string Cell(double value, int width, int digits) {
   if (!std::isfinite(value)) {

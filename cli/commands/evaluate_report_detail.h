@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cli/commands/evaluation_header.h"
+#include "evaluation/statistics.h"
 
 // What the reports of all protocols are put together from. A figure that does not exist is NaN.
 namespace rsstab::cli::detail {
@@ -15,7 +16,11 @@ using Json = nlohmann::ordered_json;
 // The number right-aligned in `width` columns, "-" where there is none.
 [[nodiscard]] std::string Cell(double value, int width, int digits);
 
+// "[low, high]"
+[[nodiscard]] std::string IntervalText(const evaluation::Interval& interval, int digits);
+
 [[nodiscard]] Json OrNull(double value);
+[[nodiscard]] Json ToJson(const evaluation::Interval& interval);
 
 // One CSV field, quoted where it must be.
 [[nodiscard]] std::string Field(const std::string& text);
@@ -28,6 +33,8 @@ using Json = nlohmann::ordered_json;
 
 // With a line feed; bytes that are no UTF-8 (paths need not be) are replaced.
 [[nodiscard]] std::string Dump(const Json& json);
+
+inline constexpr double kPercent = 100.0;
 
 }  // namespace rsstab::cli::detail
 

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "cli/commands/evaluate_options.h"
+#include "igf/base/log.h"
 #include "igf/base/result.h"
 
 namespace rsstab::cli {
@@ -21,6 +23,12 @@ struct EvaluationHeader {
   std::vector<EvaluationSetting> settings;
   std::vector<std::pair<std::string, Error>> failures;  // what was left out, and why
 };
+
+[[nodiscard]] EvaluationHeader MakeHeader(const EvaluateOptions& options,
+                                          std::vector<std::pair<std::string, Error>> failures);
+
+// One warning for each thing left out.
+void WarnOfFailures(const EvaluationHeader& header, const Logger& logger);
 
 }  // namespace rsstab::cli
 

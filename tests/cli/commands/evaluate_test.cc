@@ -8,6 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "cli/commands/evaluate_methods.h"
+#include "cli/commands/evaluate_pairs.h"
+#include "cli/commands/evaluate_synthetic.h"
 #include "igf/base/whole_file.h"
 #include "tests/evaluation/test_methods.h"
 #include "tests/evaluation/test_photos.h"
