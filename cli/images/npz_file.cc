@@ -29,14 +29,15 @@ using Source = std::unique_ptr<zip_source_t, SourceReleaser>;
 
 // Version 1.0 of the .npy format: magic, version, length of the rest, a Python dictionary filled up
 // with spaces so that the numbers begin at a multiple of 64 bytes.
-std::string NpyHeader(const std::vector<std::size_t>& shape) {
+std::string NpyHeader(const char* type, const std::vector<std::size_t>& shape) {
   static_assert(std::endian::native == std::endian::little);
   std::string sizes;
   for (const std::size_t size : shape) {
     sizes += (sizes.empty() ? "" : ", ") + std::to_string(size);
   }
   sizes += shape.size() == 1 ? "," : "";  // else Python takes the brackets for arithmetic
-  std::string dictionary = "{'descr': '<f4', 'fortran_order': False, 'shape': (" + sizes + "), }";
+  std::string dictionary =
+      std::string("{'descr': '") + type + "', 'fortran_order': False, 'shape': (" + sizes + "), }";
   constexpr std::size_t kPrefix = 10;
   constexpr std::size_t kAlignment = 64;
   const std::size_t unpadded = kPrefix + dictionary.size() + 1;
@@ -48,14 +49,28 @@ std::string NpyHeader(const std::vector<std::size_t>& shape) {
   return header + dictionary;
 }
 
-Status CheckShape(const NpzArray& array) {
+struct Content {
+  const char* type;
+  std::size_t count;
+  std::span<const std::byte> bytes;
+};
+
+Content ContentOf(const NpzArray& array) {
+  if (const auto* floats = std::get_if<std::span<const float>>(&array.values)) {
+    return {"<f4", floats->size(), std::as_bytes(*floats)};
+  }
+  const auto& bytes = std::get<std::span<const std::uint8_t>>(array.values);
+  return {"|u1", bytes.size(), std::as_bytes(bytes)};
+}
+
+Status CheckShape(const NpzArray& array, std::size_t values) {
   const std::size_t count =
       std::accumulate(array.shape.begin(), array.shape.end(), std::size_t{1}, std::multiplies<>());
-  if (count == array.values.size()) {
+  if (count == values) {
     return {};
   }
   return Fail(ErrorCode::kInvalidArgument, "array {}: its shape is for {} values, not for {}",
-              array.name, count, array.values.size());
+              array.name, count, values);
 }
 
 // `bytes` must live until the archive is closed.
@@ -98,16 +113,17 @@ Status WriteNpz(const std::string& path, std::span<const NpzArray> arrays) {
   std::vector<std::string> headers(arrays.size());
   for (std::size_t i = 0; i < arrays.size(); ++i) {
     const NpzArray& array = arrays[i];
-    if (Status status = CheckShape(array); !status) {
+    const Content content = ContentOf(array);
+    if (Status status = CheckShape(array, content.count); !status) {
       return Propagate(std::move(status.error()), path);
     }
-    headers[i] = NpyHeader(array.shape);
+    headers[i] = NpyHeader(content.type, array.shape);
     // libzip only reads what it is told not to free, but its fragments are not const.
-    const auto* bytes = reinterpret_cast<const zip_uint8_t*>(array.values.data());
+    const auto* bytes = reinterpret_cast<const zip_uint8_t*>(content.bytes.data());
     const zip_buffer_fragment_t parts[] = {
         {reinterpret_cast<zip_uint8_t*>(headers[i].data()), headers[i].size()},
         {const_cast<zip_uint8_t*>(bytes),  // NOLINT(cppcoreguidelines-pro-type-const-cast)
-         array.values.size_bytes()}};
+         content.bytes.size()}};
     if (Status status = AddEntry(archive.get(), path, array, parts, 2); !status) {
       return status;
     }
