@@ -54,7 +54,7 @@ Color ColorOf(const std::vector<Color>& wheel, const Eigen::Vector2d& displaceme
 
 }  // namespace
 
-Result<Frame> FlowColors(const MotionField& field, WorkerPool& workers) {
+Result<Frame> FlowColors(const MotionField& field, WorkerPool& workers, double full_px) {
   PixelLayout layout;
   layout.num_planes = 1;
   layout.channels[0] = 3;
@@ -64,7 +64,7 @@ Result<Frame> FlowColors(const MotionField& field, WorkerPool& workers) {
     return picture;
   }
   const std::vector<Color> wheel = MakeWheel();
-  const double longest = field.MaxLength();
+  const double longest = full_px > 0.0 ? full_px : field.MaxLength();
   const double scale = longest > 0.0 ? 1.0 / longest : 0.0;
   const MutablePlaneView& plane = picture->planes[0];
   workers.ForBlocks(field.height(), kRowsPerBlock, [&](int begin, int end) {

@@ -41,6 +41,18 @@ TEST(FlowColors, NoMotionIsWhite) {
   EXPECT_EQ(Ends({0, 0})[1], (Rgb{255, 255, 255}));
 }
 
+TEST(FlowColors, ScaleMayBeGiven) {
+  MotionField field(9, 4, 2, 2);
+  for (auto& vertex : field.vertices()) {
+    vertex = {2, 0};
+  }
+  WorkerPool workers(1);
+  const auto picture = FlowColors(field, workers, 4.0);
+  ASSERT_TRUE(picture);
+  const std::uint8_t* rgb = picture->planes[0].data;
+  EXPECT_EQ((Rgb{rgb[0], rgb[1], rgb[2]}), (Rgb{255, 128, 128}));  // half as red
+}
+
 TEST(FlowColors, WheelHasNoSeam) {
   const Rgb above = Ends({1, -1e-3F})[1];
   const Rgb below = Ends({1, 1e-3F})[1];
