@@ -163,14 +163,17 @@ std::vector<CommandText> BuildTexts() {
       {CommandId::kEvaluate,
        "evaluate",
        "[OPTIONS]",
-       "measures how well rolling shutter is taken out of single pictures",
+       "measures how well rolling shutter is taken out, and how steady clips become",
        "Records photographs along known camera motions, or takes real pictures with their "
-       "global-shutter truth, lets each method correct them, and prints how far each came; "
+       "global-shutter truth, lets each method correct them, and prints how far each came. Of "
+       "clips it has whole stabilizers, FFmpeg's too, make steady ones and measures those. "
        "docs/evaluation.md defines the protocols and figures.",
        {{"rs-stabilize evaluate --photos holidays", "known motions, the default model"},
         {"rs-stabilize evaluate --photos holidays --samples 16 --steps 8 --csv all.csv",
          "other sampling, every picture's figures"},
-        {"rs-stabilize evaluate --protocol pairs --pairs Fastec", "real pictures"}}},
+        {"rs-stabilize evaluate --protocol pairs --pairs Fastec", "real pictures"},
+        {"rs-stabilize evaluate --clips holidays --methods input,auto,off,vidstab",
+         "whole clips"}}},
   };
 }
 

@@ -73,10 +73,12 @@ Status Compare(const Invocation& invocation, const CommandContext& context) {
 
 Status Evaluate(const Invocation& invocation, const CommandContext& context) {
   std::ostringstream report;
+  const bool of_clips = !invocation.evaluate.clips.empty();
   const Status status =
-      RunAsPass(context, "evaluate", "photos", [&](const evaluation::EvaluationProgress& progress) {
-        return RunEvaluate(invocation.evaluate, context.logger, report, progress);
-      });
+      RunAsPass(context, "evaluate", of_clips ? "runs" : "photos",
+                [&](const evaluation::EvaluationProgress& progress) {
+                  return RunEvaluate(invocation.evaluate, context.logger, report, progress);
+                });
   return status ? Print(report.str()) : status;
 }
 

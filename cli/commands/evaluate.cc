@@ -5,6 +5,7 @@
 #include <opencv2/core/utility.hpp>
 #include <system_error>
 
+#include "cli/commands/evaluate_clips.h"
 #include "cli/commands/evaluate_methods.h"
 #include "cli/commands/evaluate_pairs.h"
 #include "cli/commands/evaluate_synthetic.h"
@@ -46,12 +47,16 @@ Status WriteReport(const Report& report, const EvaluateOptions& options, std::os
 
 Status RunEvaluate(const EvaluateOptions& options, const Logger& logger, std::ostream& out,
                    const evaluation::EvaluationProgress& progress) {
+  if (Status status = CheckOutputFolders(options); !status) {
+    return status;
+  }
+  if (options.protocol == EvaluationProtocol::kClips || !options.clips.empty()) {
+    const auto report = EvaluateClips(options, logger, progress);
+    return report ? WriteReport(*report, options, out) : Propagate(report.error());
+  }
   if (ResolveThreadCount(options.jobs) > 1) {
     // The photographs are what runs in parallel; OpenCV's own threads would only get in the way.
     cv::setNumThreads(1);
-  }
-  if (Status status = CheckOutputFolders(options); !status) {
-    return status;
   }
   const auto factory = MakeMethodFactory(options);
   if (!factory) {

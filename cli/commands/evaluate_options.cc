@@ -38,19 +38,25 @@ OptionTable<Options> BuildTable() {
   group = "Data";
   add(ChoiceOption<Options>("protocol", &Options::protocol,
                             {{"synthetic-val", EvaluationProtocol::kSyntheticVal},
-                             {"pairs", EvaluationProtocol::kPairs}}),
-      "What to evaluate on: photographs recorded along known motions, or real pictures with their "
-      "global-shutter truth.");
+                             {"pairs", EvaluationProtocol::kPairs},
+                             {"clips", EvaluationProtocol::kClips}}),
+      "What to evaluate on: photographs recorded along known motions, real pictures with their "
+      "global-shutter truth, or whole clips.");
   add(TextOption<Options>("photos", "FOLDER", &Options::photos), "synthetic-val: the photographs.");
   add(TextOption<Options>("pairs", "FOLDER", &Options::pairs),
       "pairs: where to look for folders that hold rs_1.png and gs_1.png.");
+  add(TextOption<Options>("clips", "FOLDER", &Options::clips),
+      "clips: video files, and folders that `rs-stabilize simulate` wrote. Implies the protocol.");
+  add(SwitchOption<Options>("twins", &Options::twins),
+      "clips: also steady the global-shutter twin of each simulated clip, which has nothing to "
+      "correct.");
   add(TextOption<Options>("structured", "FILE", &Options::structured),
       "synthetic-val: list of photographs that are told apart as well, one a line; what follows a "
       "comma is ignored.");
   add(TextOption<Options>("structured-source", "TEXT", &Options::structured_source),
       "Only the lines of that list that contain TEXT count.");
   add(IntegerOption<Options>("limit", "N", &Options::limit, 0, 1'000'000'000),
-      "Use the first N photographs or pairs; 0 means all.");
+      "Use the first N photographs, pairs or clips; 0 means all.");
   add(IntegerOption<Options>("linearity-photos", "N", &Options::linearity_photos, 0, 1'000'000'000),
       "synthetic-val: skew the first N photographs by known factors, to see whether the answer "
       "grows with the motion; 0 leaves this out.");
@@ -58,7 +64,9 @@ OptionTable<Options> BuildTable() {
   group = "Methods";
   add(TextOption<Options>("methods", "LIST", &Options::methods),
       "Which to compare, separated by commas: none (the picture as it is; always there), "
-      "regression (where --regression-model names one), sample, mean.");
+      "regression (where --regression-model names one), sample, mean. Of clips: input, any word of "
+      "the main command's --rs, vidstab and deshake (FFmpeg's, where an ffmpeg is installed), all "
+      "of them unless given; main options may follow, as in off+smoothness=2.");
   add(TextOption<Options>("model", "FILE", &Options::model),
       "Model file, its folder, or the name of an installed model; the default model unless given.");
   add(TextOption<Options>("regression-model", "FILE", &Options::regression_model),
@@ -82,6 +90,10 @@ OptionTable<Options> BuildTable() {
   add(TextOption<Options>("csv", "FILE", &Options::csv),
       "Write one line for each picture and method.");
   add(TextOption<Options>("json", "FILE", &Options::json), "Write the table's figures as JSON.");
+
+  add(RealOption<Options>("crf", "N", &Options::crf, {0.0, 51.0}),
+      "clips: quality of the H.264 that every method writes.");
+  add(TextOption<Options>("preset", "NAME", &Options::preset), "clips: x264's preset for it.");
 
   group = "Running";
   add(IntegerOption<Options>("seed", "N", &Options::seed, 0,

@@ -14,6 +14,7 @@ namespace rsstab::cli {
 enum class EvaluationProtocol {
   kSyntheticVal,  // photographs recorded along known motions
   kPairs,         // real rolling-shutter pictures with their global-shutter truth
+  kClips,         // whole clips, real and simulated, through whole stabilizers
 };
 
 // What `rs-stabilize evaluate` is told. Defaults are the member initialisers.
@@ -21,13 +22,17 @@ struct EvaluateOptions {
   EvaluationProtocol protocol = EvaluationProtocol::kSyntheticVal;
   std::string photos;             // synthetic-val: folder of photographs
   std::string pairs;              // pairs: folder to look for pairs in
+  std::string clips;              // clips: folder of clips; naming one means this protocol
+  bool twins = false;             // clips: the global-shutter twins of simulated ones as well
   std::string structured;         // list of photographs to be told apart
   std::string structured_source;  // text that the lines of the list must contain to count
   std::int64_t limit = 0;         // photographs or pairs from the first; 0 = all
   std::int64_t linearity_photos = 100;
 
-  std::string methods = "none,regression,sample,mean";  // regression only with its model
-  std::string model;                                    // empty: the default one
+  // Of single pictures; regression only with its model. Clips are steadied by every method of
+  // ClipMethodNames() unless this is changed.
+  std::string methods = "none,regression,sample,mean";
+  std::string model;  // empty: the default one
   std::string regression_model;
   std::string device = "auto";
   int samples = 8;               // of the method "mean"
@@ -36,6 +41,9 @@ struct EvaluateOptions {
   std::optional<double> guidance;
   std::optional<double> eta;
   bool know_focal = false;
+
+  double crf = 12.0;  // of the clips that the methods write
+  std::string preset = "ultrafast";
 
   std::int64_t seed = 1;
   int jobs = 0;      // photographs at a time; 0 = one per core

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/commands/evaluate_clips.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "cli/cancellation.h"
+#include "cli/commands/clip_method.h"
+#include "cli/media/video_reader.h"
+#include "cli/output_names.h"
+#include "igf/simulation_truth.h"
+
+namespace rsstab::cli {
+namespace {
+
+constexpr double kMilli = 1e3;
+
+// The other messages of a run, of which there are many, would only hide what is told here.
+Logger WarningsOnly(const Logger& logger) {
+  Logger quiet = logger->clone(logger->name());
+  quiet->set_level(std::max(logger->level(), spdlog::level::warn));
+  return quiet;
+}
+
+Result<std::optional<igf::SimulationTruth>> ReadTruth(const EvaluationClip& clip) {
+  if (clip.kind == ClipKind::kReal) {
+    return std::nullopt;
+  }
+  auto truth = igf::ReadSimulationTruth((clip.folder / "truth.json").string());
+  if (!truth) {
+    return Propagate(truth.error());
+  }
+  if (clip.kind == ClipKind::kTwin) {
+    truth->camera.readout_s = 0.0;
+  }
+  return std::move(*truth);
+}
+
+// Whether the file is a clip at all. What is odd about it is told here, once for all methods.
+Status TryClip(const EvaluationClip& clip, const Logger& logger) {
+  const auto reader = media::VideoReader::Open(clip.video.string(), {0, logger});
+  return reader ? Status{} : Propagate(reader.error());
+}
+
+class Evaluation {
+ public:
+  Evaluation(const EvaluateOptions& options, std::vector<ClipMethod> methods, std::size_t clips,
+             const Logger& logger, const evaluation::EvaluationProgress& progress)
+      : encoding_{options.crf, options.preset},
+        methods_(std::move(methods)),
+        logger_(logger),
+        quiet_(WarningsOnly(logger)),
+        progress_(progress),
+        clips_(clips) {
+    for (const ClipMethod& method : methods_) {
+      report_.methods.push_back(method.name);
+    }
+  }
+
+  // Takes out the methods that need what is not there.
+  void LeaveOutMissingTools() {
+    std::erase_if(methods_, [this](const ClipMethod& method) {
+      const auto missing = WhyToolIsMissing(method.tool);
+      if (missing) {
+        LeaveOut(method.name, *missing);
+      }
+      return missing.has_value();
+    });
+  }
+
+  Status Evaluate(const EvaluationClip& clip, const std::string& folder) {
+    const std::size_t runs_then = runs_done_ + methods_.size();
+    auto truth = ReadTruth(clip);
+    Status usable = truth ? TryClip(clip, quiet_) : Propagate(truth.error());
+    if (!usable) {
+      LeaveOut(clip.name, usable.error());
+      return AdvanceTo(runs_then);
+    }
+    ClipRecord record{clip.name, clip.kind, {}, {}};
+    if (*truth) {
+      record.readout_s = (*truth)->camera.readout_s;
+    }
+    for (const ClipMethod& method : methods_) {
+      auto run = Run(method, clip, *truth ? &**truth : nullptr, folder);
+      if (run) {
+        record.runs.push_back(std::move(*run));
+      } else if (run.error().code == ErrorCode::kCancelled) {
+        return Propagate(run.error());
+      } else {
+        LeaveOut(clip.name + ", " + method.name, run.error());
+      }
+      if (Status status = AdvanceTo(runs_done_ + 1); !status) {
+        return status;
+      }
+    }
+    report_.clips.push_back(std::move(record));
+    return {};
+  }
+
+  [[nodiscard]] ClipsReport TakeReport() { return std::move(report_); }
+
+ private:
+  void LeaveOut(const std::string& name, const Error& error) {
+    logger_->warn("evaluate: {} is left out: {}", name, error.message);
+    report_.header.failures.emplace_back(name, error);
+  }
+
+  Status AdvanceTo(std::size_t runs) {
+    runs_done_ = runs;
+    const auto all = static_cast<std::int64_t>(clips_ * methods_.size());
+    if (progress_ && !progress_(static_cast<std::int64_t>(runs_done_), all)) {
+      return Fail(ErrorCode::kCancelled, "Stopped after {} of {} runs, as asked.", runs_done_, all);
+    }
+    return {};
+  }
+
+  Result<ClipRun> Run(const ClipMethod& method, const EvaluationClip& clip,
+                      const igf::SimulationTruth* truth, const std::string& folder) {
+    const auto steady = RunClipMethod(method, clip, truth, encoding_, folder, quiet_);
+    if (!steady) {
+      return Propagate(steady.error());
+    }
+    CompareOptions compare;
+    compare.input = clip.video.string();
+    compare.output = steady->clip;
+    compare.truth = clip.folder.string();
+    const bool is_input = method.tool == ClipTool::kNone;
+    auto measured = CompareClips(
+        compare, SilentLogger(), [](std::int64_t, std::int64_t) { return !CancelRequested(); },
+        is_input ? CompareScope::kInputOnly : CompareScope::kOutputOnly);
+    if (!measured) {
+      return Propagate(measured.error());
+    }
+    ClipRun run;
+    run.method = method.name;
+    run.clip = is_input ? measured->input : measured->output;
+    if (is_input) {
+      return run;
+    }
+    run.pair = measured->pair;
+    const double frames = static_cast<double>(std::max<std::int64_t>(1, run.clip.metrics.frames));
+    if (steady->analysis_s > 0.0) {
+      run.analysis_ms = kMilli * steady->analysis_s / frames;
+    }
+    run.render_ms = kMilli * steady->render_s / frames;
+    run.total_ms = run.analysis_ms.value_or(0.0) + *run.render_ms;
+    if (!steady->analysis) {
+      return run;
+    }
+    run.rs_source = steady->analysis->rs_source;
+    run.rs_reason = steady->analysis->rs_reason;
+    if (steady->analysis->readout_s != 0.0) {
+      run.readout_s = steady->analysis->readout_s;
+    }
+    const auto field = evaluation::ScoreRsFields(steady->analysis_file, truth);
+    if (!field) {
+      return Propagate(field.error());
+    }
+    run.field = *field;
+    return run;
+  }
+
+  ClipEncoding encoding_;
+  std::vector<ClipMethod> methods_;
+  Logger logger_;
+  Logger quiet_;
+  const evaluation::EvaluationProgress& progress_;
+  std::size_t clips_;
+  std::size_t runs_done_ = 0;
+  ClipsReport report_;
+};
+
+}  // namespace
+
+Result<ClipsReport> EvaluateClips(const EvaluateOptions& options, const Logger& logger,
+                                  const evaluation::EvaluationProgress& progress) {
+  const std::string list = options.methods == EvaluateOptions().methods
+                               ? fmt::format("{}", fmt::join(ClipMethodNames(), ","))
+                               : options.methods;
+  if (options.clips.empty()) {
+    return Fail(ErrorCode::kInvalidArgument,
+                "--clips: the protocol clips needs a folder of clips.");
+  }
+  auto methods = ParseClipMethods(list);
+  if (!methods) {
+    return Propagate(methods.error());
+  }
+  auto clips = FindClips(options.clips, options.twins);
+  if (!clips) {
+    return Propagate(clips.error());
+  }
+  if (options.limit > 0 && static_cast<std::int64_t>(clips->size()) > options.limit) {
+    clips->resize(static_cast<std::size_t>(options.limit));
+  }
+  const auto scratch = ScratchFolder::Create();
+  if (!scratch) {
+    return Propagate(scratch.error());
+  }
+  Evaluation evaluation(options, std::move(*methods), clips->size(), logger, progress);
+  evaluation.LeaveOutMissingTools();
+  for (const EvaluationClip& clip : *clips) {
+    if (Status status = evaluation.Evaluate(clip, scratch->File("")); !status) {
+      return Propagate(status.error());
+    }
+  }
+  ClipsReport report = evaluation.TakeReport();
+  EvaluateOptions settings = options;
+  settings.protocol = EvaluationProtocol::kClips;
+  report.header = MakeHeader(settings, std::move(report.header.failures));
+  if (std::all_of(report.clips.begin(), report.clips.end(),
+                  [](const ClipRecord& clip) { return clip.runs.empty(); })) {
+    const auto& [name, error] = report.header.failures.back();
+    return Fail(error.code, "{}: there is nothing to report; {} is left out: {}", options.clips,
+                name, error.message);
+  }
+  return report;
+}
+
+}  // namespace rsstab::cli

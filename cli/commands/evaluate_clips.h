@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef RSSTAB_CLI_COMMANDS_EVALUATE_CLIPS_H_
+#define RSSTAB_CLI_COMMANDS_EVALUATE_CLIPS_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/commands/clip_set.h"
+#include "cli/commands/compare.h"
+#include "cli/commands/evaluate_options.h"
+#include "cli/commands/evaluation_header.h"
+#include "evaluation/for_each_item.h"
+#include "evaluation/rs_field_score.h"
+#include "igf/base/log.h"
+#include "igf/base/result.h"
+
+namespace rsstab::cli {
+
+// What one method made of one clip.
+struct ClipRun {
+  std::string method;
+  CompareReport::Clip clip;                     // the result; the clip itself for the method input
+  std::optional<stabilizer::PairMetrics> pair;  // result against input; not for the method input
+  // Own methods only.
+  std::optional<evaluation::RsFieldScore> field;
+  std::string rs_source;  // as the analysis file has it, and why
+  std::string rs_reason;
+  std::optional<double> readout_s;  // where a source is used that has one
+  // Wall time a frame, decoding and encoding included; empty for the method input.
+  std::optional<double> analysis_ms;  // also empty for a tool of one pass
+  std::optional<double> render_ms;
+  std::optional<double> total_ms;
+};
+
+struct ClipRecord {
+  std::string name;
+  ClipKind kind = ClipKind::kReal;
+  std::optional<double> readout_s;  // the true one
+  std::vector<ClipRun> runs;        // in the order of the methods; failed ones are missing
+};
+
+struct ClipsReport {
+  EvaluationHeader header;
+  std::vector<std::string> methods;
+  std::vector<ClipRecord> clips;
+};
+
+// As for the other protocols (evaluate.h). The table and the JSON have means over the clips of each
+// kind as well.
+[[nodiscard]] std::string FormatText(const ClipsReport& report);
+[[nodiscard]] std::string FormatJson(const ClipsReport& report);
+[[nodiscard]] std::string FormatCsv(const ClipsReport& report);
+
+// Lets every method steady every clip of the folder options.clips, one after the other, and
+// measures what comes out. Clips that cannot be used, methods that cannot run here and runs that
+// fail are named in the header, with a warning, and left out. `progress` counts runs.
+// Errors: those of FindClips and ParseClipMethods; that of the last thing left out when
+// there is no run to report; kCancelled.
+[[nodiscard]] Result<ClipsReport> EvaluateClips(
+    const EvaluateOptions& options, const Logger& logger,
+    const evaluation::EvaluationProgress& progress = {});
+
+}  // namespace rsstab::cli
+
+#endif  // RSSTAB_CLI_COMMANDS_EVALUATE_CLIPS_H_
