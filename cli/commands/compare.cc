@@ -2,12 +2,15 @@
 #include "cli/commands/compare.h"
 
 #include <algorithm>
+#include <exception>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "cli/media/video_reader.h"
+#include "igf/base/parallel_for.h"
 #include "igf/camera_profile_reader.h"
 
 namespace rsstab::cli {
@@ -92,23 +95,41 @@ Result<Truth> OpenTruth(const CompareOptions& options, const Logger& logger) {
   return Truth{std::move(*twin), *meter, *meter};
 }
 
-// A clip to be measured for itself.
-struct Subject {
-  Source* source = nullptr;
-  stabilizer::ClipMeter* meter = nullptr;
-  stabilizer::TruthMeter* truth = nullptr;  // null without a twin
-};
+// One meter's work on the frames at hand.
+using Measurement = std::function<Status()>;
 
-Status MeasureSubject(const Subject& subject, const Source* twin) {
-  if (!subject.source->frame) {
-    return {};
+// Meters share nothing, so they run side by side.
+Status MeasureAll(const std::vector<Measurement>& measurements, WorkerPool& pool) {
+  std::vector<Status> results(measurements.size());
+  pool.ForBlocks(static_cast<int>(measurements.size()), 1, [&](int index, int) {
+    const auto i = static_cast<std::size_t>(index);
+    try {
+      results[i] = measurements[i]();
+    } catch (const std::exception& exception) {
+      results[i] = Fail(ErrorCode::kInternal, "A frame cannot be measured: {}", exception.what());
+    }
+  });
+  for (Status& result : results) {
+    if (!result) {
+      return std::move(result);
+    }
   }
-  const FrameView picture = subject.source->frame->frame.View();
-  if (Status pushed = subject.meter->Push(picture); !pushed) {
-    return pushed;
-  }
-  return twin != nullptr && twin->frame ? subject.truth->Push(picture, twin->frame->frame.View())
-                                        : Status{};
+  return {};
+}
+
+// Pushes the frame of `clip` into `meter`, while there is one.
+Measurement OfClip(const Source& clip, stabilizer::ClipMeter& meter) {
+  return [&clip, &meter] { return clip.frame ? meter.Push(clip.frame->frame.View()) : Status{}; };
+}
+
+// The same of the frames of two clips, while both have one.
+template <typename Meter>
+Measurement OfBoth(const Source& first, const Source& second, Meter& meter) {
+  return [&first, &second, &meter] {
+    return first.frame && second.frame
+               ? meter.Push(first.frame->frame.View(), second.frame->frame.View())
+               : Status{};
+  };
 }
 
 CompareReport::Clip Describe(const media::VideoInfo& info, const stabilizer::ClipMeter& meter) {
@@ -148,13 +169,20 @@ Result<CompareReport> CompareClips(const CompareOptions& options, const Logger& 
   stabilizer::ClipMeter output_meter;
   stabilizer::PairMeter pair_meter;
   std::vector<Source*> sources = {&*input};
-  std::vector<Subject> subjects;
+  std::vector<Measurement> measurements;
   if (scope != CompareScope::kOutputOnly) {
-    subjects.push_back({&*input, &input_meter, truth ? &truth->input : nullptr});
+    measurements.push_back(OfClip(*input, input_meter));
+    if (truth) {
+      measurements.push_back(OfBoth(*input, truth->twin, truth->input));
+    }
   }
   if (output) {
     sources.push_back(&*output);
-    subjects.push_back({&*output, &output_meter, truth ? &truth->output : nullptr});
+    measurements.push_back(OfClip(*output, output_meter));
+    measurements.push_back(OfBoth(*input, *output, pair_meter));
+    if (truth) {
+      measurements.push_back(OfBoth(*output, truth->twin, truth->output));
+    }
   }
   std::int64_t expected = 0;
   for (const Source* source : sources) {
@@ -163,6 +191,7 @@ Result<CompareReport> CompareClips(const CompareOptions& options, const Logger& 
   if (truth) {
     sources.push_back(&truth->twin);
   }
+  WorkerPool pool(ResolveThreadCount(options.threads));
   for (std::int64_t index = 0;; ++index) {
     for (Source* source : sources) {
       if (Status read = source->Next(); !read) {
@@ -172,29 +201,24 @@ Result<CompareReport> CompareClips(const CompareOptions& options, const Logger& 
     if (!input->frame && !(output && output->frame)) {
       break;
     }
-    Status pushed;
-    for (const Subject& subject : subjects) {
-      if (pushed) {
-        pushed = MeasureSubject(subject, truth ? &truth->twin : nullptr);
-      }
-    }
-    if (pushed && input->frame && output && output->frame) {
-      pushed = pair_meter.Push(input->frame->frame.View(), output->frame->frame.View());
-    }
-    if (!pushed) {
-      return Propagate(pushed.error());
+    if (Status measured = MeasureAll(measurements, pool); !measured) {
+      return Propagate(measured.error());
     }
     if (progress && !progress(index + 1, expected)) {
       return Fail(ErrorCode::kCancelled, "Stopped after {} frames, as asked.", index + 1);
     }
   }
   CompareReport report;
-  for (const Subject& subject : subjects) {
-    CompareReport::Clip& clip = subject.source == &*input ? report.input : report.output;
-    clip = Describe(subject.source->reader->info(), *subject.meter);
-    if (truth) {
-      clip.truth = subject.truth->Measure();
-    }
+  const auto truth_of = [&truth](stabilizer::TruthMeter Truth::*meter) {
+    return truth ? std::optional((*truth.*meter).Measure()) : std::nullopt;
+  };
+  if (scope != CompareScope::kOutputOnly) {
+    report.input = Describe(input->reader->info(), input_meter);
+    report.input.truth = truth_of(&Truth::input);
+  }
+  if (output) {
+    report.output = Describe(output->reader->info(), output_meter);
+    report.output.truth = truth_of(&Truth::output);
   }
   report.pair = pair_meter.Measure();
   if (output && input->frames != output->frames) {

@@ -21,7 +21,7 @@ pipeline::OptionTable<CompareOptions> BuildTable() {
   add(pipeline::SwitchOption("json", &O::json), "Output",
       "Print one JSON object instead of a table.");
   add(pipeline::IntegerOption("threads", "N", &O::threads, 0, 1024), "Running",
-      "Threads to decode with; 0 takes one for each processor.");
+      "Threads to decode and measure with; 0 takes one for each processor.");
   return table;
 }
 

@@ -16,7 +16,7 @@ struct CompareOptions {
   // itself). Empty: no truth.
   std::string truth;
   bool json = false;  // for programs instead of people
-  int threads = 0;    // of the decoders; 0 = one per core
+  int threads = 0;    // to decode and measure with; 0 = one per core
 };
 
 // All options but the two clips, which are the command's positional arguments.
