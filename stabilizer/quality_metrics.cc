@@ -108,4 +108,17 @@ ClipMetrics ClipMeter::Measure(double frames_per_second) const {
   return result;
 }
 
+std::vector<PicturePose> ClipMeter::Path() const {
+  return impl_->frames == 0 ? std::vector<PicturePose>{}
+                            : PicturePath(impl_->motions, impl_->small.cols, impl_->small.rows);
+}
+
+std::optional<Eigen::Vector2d> ClipMeter::LastStep() const {
+  if (impl_->motions.empty() || !impl_->motions.back()) {
+    return std::nullopt;
+  }
+  const MotionList last(&impl_->motions.back(), 1);
+  return PicturePath(last, impl_->small.cols, impl_->small.rows).back().position;
+}
+
 }  // namespace rsstab::stabilizer

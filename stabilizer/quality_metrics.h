@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "igf/base/frame.h"
 #include "igf/base/result.h"
+#include "stabilizer/metrics/path_metrics.h"
 
 namespace rsstab::stabilizer {
 
@@ -46,6 +48,12 @@ class ClipMeter {
   // Figures of all frames so far. `frames_per_second` > 0: frames count as evenly spaced, since
   // container times of real clips are often damaged; use the clip's mean rate.
   [[nodiscard]] ClipMetrics Measure(double frames_per_second) const;
+
+  // The picture's pose in each frame so far; motions that could not be measured count as none.
+  [[nodiscard]] std::vector<PicturePose> Path() const;
+  // What the last frame's content moved at the picture's centre, px at 640 px width; empty where
+  // that could not be measured.
+  [[nodiscard]] std::optional<Eigen::Vector2d> LastStep() const;
 
  private:
   struct Impl;

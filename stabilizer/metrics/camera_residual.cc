@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -168,6 +169,7 @@ Status TruthMeter::Push(const FrameView& frame, const FrameView& twin) {
     return Propagate(twin_luma.error());
   }
   ++frames_;
+  frame_residual_.push_back(std::numeric_limits<float>::quiet_NaN());
   const cv::Mat picture = detail::MetricPicture(*frame_luma, frame.layout.bit_depth);
   const cv::Mat truth = detail::MetricPicture(*twin_luma, twin.layout.bit_depth);
   const auto alignment = detail::AlignFrames(picture, truth);
@@ -198,6 +200,7 @@ Status TruthMeter::Push(const FrameView& frame, const FrameView& twin) {
   const double residual = fit->rms_px * to_reference;
   squares_ += residual * residual * static_cast<double>(fit->inliers);
   worst_ = std::max(worst_, residual);
+  frame_residual_.back() = static_cast<float>(residual);
   matches_ += fit->inliers;
   ++aligned_;
   return {};
@@ -207,6 +210,7 @@ TruthMetrics TruthMeter::Measure() const {
   TruthMetrics result;
   result.frames = frames_;
   result.unaligned = frames_ - aligned_;
+  result.frame_residual = frame_residual_;
   if (matches_ > 0) {
     const auto count = static_cast<double>(matches_);
     result.matches_per_frame = count / static_cast<double>(aligned_);

@@ -46,9 +46,11 @@ struct TruthMetrics {
   std::optional<double> camera_residual;
   std::optional<double> worst_frame;  // the largest camera residual of a single frame
   std::optional<double> bend;         // the same after the best free homography
+  std::vector<float> frame_residual;  // camera residual of each frame; NaN where nothing agreed
 };
 
-// Compares a clip with its global-shutter twin. Any order, not thread safe; keeps a few numbers.
+// Compares a clip with its global-shutter twin. Any order, not thread safe; keeps a few numbers,
+// and one for each frame.
 class TruthMeter {
  public:
   // `camera` of the twin's pictures; another picture size is the same view, scaled.
@@ -71,6 +73,7 @@ class TruthMeter {
   double squares_ = 0.0;
   double bend_squares_ = 0.0;
   double worst_ = 0.0;
+  std::vector<float> frame_residual_;
 };
 
 }  // namespace rsstab::stabilizer

@@ -40,23 +40,19 @@ Grid DisplacementsOnGrid(const Eigen::Matrix3d& motion, int width, int height) {
   return result;
 }
 
-struct Path {
-  std::vector<Eigen::Vector2d> position;  // of frames 1, 2, ...; frame 0 is at the origin
-  std::vector<double> angle;
-};
-
-Path Accumulate(MotionList motions, int width, int height) {
-  Path path;
-  Eigen::Vector2d position = Eigen::Vector2d::Zero();
-  double angle = 0.0;
+// The pose after each motion, in px of width x height.
+std::vector<PicturePose> Accumulate(MotionList motions, int width, int height) {
+  std::vector<PicturePose> path;
+  PicturePose pose;
   const Eigen::Vector2d centre = Centre(width, height);
   for (const auto& motion : motions) {
     if (motion) {
-      position += Project(*motion, centre) - centre;
-      angle += SimilarityAt(*motion, centre).angle_rad;
+      const LocalSimilarity turn = SimilarityAt(*motion, centre);
+      pose.position += Project(*motion, centre) - centre;
+      pose.angle_rad += turn.angle_rad;
+      pose.scale *= turn.scale;
     }
-    path.position.push_back(position);
-    path.angle.push_back(angle);
+    path.push_back(pose);
   }
   return path;
 }
@@ -103,6 +99,15 @@ double LowShare(const Energy& energy, std::size_t count, double still) {
 
 }  // namespace
 
+std::vector<PicturePose> PicturePath(MotionList motions, int width, int height) {
+  std::vector<PicturePose> path = Accumulate(motions, width, height);
+  for (PicturePose& pose : path) {
+    pose.position *= detail::ToReference(width);
+  }
+  path.insert(path.begin(), PicturePose{});
+  return path;
+}
+
 LocalSimilarity SimilarityAt(const Eigen::Matrix3d& homography, const Eigen::Vector2d& pixel) {
   const Eigen::Vector3d image = homography * pixel.homogeneous();
   const Eigen::Matrix2d jacobian =
@@ -136,8 +141,7 @@ std::optional<double> Shake(MotionList motions, int width, int height, double fr
   if (motions.size() < kFewestForShake || !(frames_per_second > 0.0)) {
     return std::nullopt;
   }
-  std::vector<Eigen::Vector2d> path = Accumulate(motions, width, height).position;
-  path.insert(path.begin(), Eigen::Vector2d::Zero());
+  const std::vector<PicturePose> path = PicturePath(motions, width, height);
   const double sigma = kSmoothS * frames_per_second;
   const auto reach = static_cast<std::ptrdiff_t>(kCutOffSigmas * sigma);
   const auto size = static_cast<std::ptrdiff_t>(path.size());
@@ -151,12 +155,12 @@ std::optional<double> Shake(MotionList motions, int width, int height, double fr
          k <= std::min(size - 1, n + reach); ++k) {
       const double distance = static_cast<double>(k - n) / sigma;
       const double weight = std::exp(-0.5 * distance * distance);
-      sum += weight * path[static_cast<std::size_t>(k)];
+      sum += weight * path[static_cast<std::size_t>(k)].position;
       weights += weight;
     }
-    squares += (path[static_cast<std::size_t>(n)] - sum / weights).squaredNorm();
+    squares += (path[static_cast<std::size_t>(n)].position - sum / weights).squaredNorm();
   }
-  return std::sqrt(squares / static_cast<double>(size - 2 * left_out)) * detail::ToReference(width);
+  return std::sqrt(squares / static_cast<double>(size - 2 * left_out));
 }
 
 std::optional<Stability> PathStability(MotionList motions, int width, int height) {
@@ -165,18 +169,19 @@ std::optional<Stability> PathStability(MotionList motions, int width, int height
   }
   constexpr double kStillPx = 1e-6;
   constexpr double kStillRad = 1e-9;
-  const Path path = Accumulate(motions, width, height);
   std::vector<double> x;
   std::vector<double> y;
-  for (const Eigen::Vector2d& position : path.position) {
-    x.push_back(position.x());
-    y.push_back(position.y());
+  std::vector<double> angle;
+  for (const PicturePose& pose : Accumulate(motions, width, height)) {
+    x.push_back(pose.position.x());
+    y.push_back(pose.position.y());
+    angle.push_back(pose.angle_rad);
   }
   const Energy along_x = SpectralEnergy(x);
   const Energy along_y = SpectralEnergy(y);
   const Energy both = {along_x.low + along_y.low, along_x.all + along_y.all};
   return Stability{LowShare(both, motions.size(), kStillPx),
-                   LowShare(SpectralEnergy(path.angle), motions.size(), kStillRad)};
+                   LowShare(SpectralEnergy(angle), motions.size(), kStillRad)};
 }
 
 }  // namespace rsstab::stabilizer

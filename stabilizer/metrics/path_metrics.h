@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace rsstab::stabilizer {
 
@@ -39,6 +40,16 @@ struct Stability {
 };
 // Empty below 12 motions.
 [[nodiscard]] std::optional<Stability> PathStability(MotionList motions, int width, int height);
+
+// Where the picture's content stands against the first frame: the path above, and the product of
+// the scales at the picture's centre.
+struct PicturePose {
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  // px at 640 px width
+  double angle_rad = 0.0;                              // x towards y
+  double scale = 1.0;
+};
+// One pose a frame, that is, one more than motions.
+[[nodiscard]] std::vector<PicturePose> PicturePath(MotionList motions, int width, int height);
 
 // Rotation (rad, x towards y) and uniform scale of what a homography does near a pixel.
 struct LocalSimilarity {

@@ -115,6 +115,8 @@ TEST(TruthMeter, SeesSkewWhereBendDoesNot) {
       std::sqrt((kShear - roll) * (kShear - roll) * var_y + roll * roll * var_x);
   EXPECT_NEAR(metrics.camera_residual.value(), expected, 0.05 * expected);
   EXPECT_NEAR(metrics.worst_frame.value(), metrics.camera_residual.value(), 1e-9);
+  ASSERT_EQ(metrics.frame_residual.size(), 1U);
+  EXPECT_NEAR(metrics.frame_residual[0], metrics.camera_residual.value(), 1e-6);  // stored as float
   EXPECT_LT(metrics.bend.value(), 0.05);
 }
 
@@ -140,6 +142,7 @@ TEST(TruthMeter, RefusesABrokenCameraAndCountsWhatItCannotAlign) {
   auto meter = TruthMeter::Create(TestCamera()).value();
   ASSERT_TRUE(meter.Push(ViewOf(flat), ViewOf(flat)));
   EXPECT_EQ(meter.Measure().unaligned, 1);
+  EXPECT_TRUE(std::isnan(meter.Measure().frame_residual.at(0)));
   EXPECT_FALSE(meter.Measure().camera_residual);
 }
 

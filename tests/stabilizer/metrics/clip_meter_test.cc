@@ -42,6 +42,15 @@ TEST(ClipMeter, MeasuresAKnownSwing) {
   EXPECT_LT(metrics.wobble.value(), 0.05);  // a shift is a homography: tracking noise only
   EXPECT_LT(metrics.row_wobble.value(), 0.02);
   EXPECT_LT(metrics.stability.value(), 0.1);  // six swings: the seventh frequency
+  // A picture that looks further right shows its content further left.
+  const auto path = meter.Path();
+  ASSERT_EQ(path.size(), static_cast<std::size_t>(kFrames));
+  for (const int n : {0, 2, 7, kFrames - 1}) {
+    EXPECT_NEAR(path[static_cast<std::size_t>(n)].position.x(),
+                -kAmplitude * std::sin(Phase(n, kPeriod)), 0.1);
+  }
+  EXPECT_NEAR((meter.LastStep().value() - (path[60].position - path[59].position)).norm(), 0.0,
+              1e-9);
 }
 
 TEST(ClipMeter, SeesRowsShearedToAndFro) {

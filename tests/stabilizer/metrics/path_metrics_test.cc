@@ -43,6 +43,23 @@ Motions FollowPath(int count, const std::function<Eigen::Vector2d(int)>& path) {
 
 double Phase(int n, double period) { return 2.0 * std::numbers::pi * n / period; }
 
+TEST(PicturePath, AddsUpShiftTurnAndScale) {
+  Eigen::Matrix3d zoom = Eigen::Matrix3d::Identity();
+  zoom.topLeftCorner<2, 2>() *= 1.1;
+  zoom(0, 2) = -0.1 * 0.5 * (kWidth - 1);  // about the centre
+  zoom(1, 2) = -0.1 * 0.5 * (kHeight - 1);
+  const Motions motions = {Shift({3, -2}), TurnAboutCentre(0.01), std::nullopt, zoom};
+  const auto path = PicturePath(motions, kWidth, kHeight);
+  ASSERT_EQ(path.size(), 5U);
+  EXPECT_EQ(path[0].position, Eigen::Vector2d(0, 0));
+  const double to_reference = 640.0 / kWidth;
+  EXPECT_NEAR((path[4].position - to_reference * Eigen::Vector2d(3, -2)).norm(), 0.0, kExact);
+  EXPECT_EQ(path[1].angle_rad, 0.0);
+  EXPECT_NEAR(path[4].angle_rad, 0.01, kExact);
+  EXPECT_NEAR(path[3].scale, 1.0, kExact);  // what was not measured counts as no motion
+  EXPECT_NEAR(path[4].scale, 1.1, kExact);
+}
+
 TEST(Jitter, OfASineIsItsSecondDifference) {
   constexpr double kAmplitude = 6.0;
   constexpr int kPeriod = 10;
