@@ -11,10 +11,9 @@
 #include <vector>
 
 #include "cli/media/telemetry_track.h"
-#include "igf/camera_profile_reader.h"
 #include "igf/gpmf_parser.h"
 #include "igf/gyro_log_reader.h"
-#include "igf/imu_axes.h"
+#include "stabilizer/pipeline/rs_input_files.h"
 
 namespace rsstab::cli {
 namespace {
@@ -52,44 +51,21 @@ Result<igf::GyroRecording> ReadNamedGyro(const std::string& path,
   return LooksLikeVideo(path) ? ReadTelemetryGyro(path, options) : igf::ReadGyroLog(path, options);
 }
 
-Status ReadCamera(const pipeline::StabilizeOptions& options, const media::VideoInfo& clip,
-                  pipeline::RsInputs& inputs) {
-  const auto profile = igf::ReadCameraProfile(options.camera_file);
-  if (!profile) {
-    return Propagate(profile.error());
-  }
-  const auto fitted = igf::ProfileForVideo(*profile, clip.width, clip.height);
-  if (!fitted) {
-    return Propagate(fitted.error(), options.camera_file);
-  }
-  if (fitted->focal_is_known) {
-    inputs.camera = fitted->camera;
-  }
-  inputs.readout_s = fitted->camera.readout_s;
-  return {};
-}
-
 }  // namespace
 
 Result<pipeline::RsInputs> ReadRsInputs(const pipeline::StabilizeOptions& options,
                                         const media::VideoInfo& clip, const Logger& logger) {
-  pipeline::RsInputs inputs;
-  if (!options.camera_file.empty()) {
-    if (Status status = ReadCamera(options, clip, inputs); !status) {
-      return Propagate(status.error());
-    }
+  auto inputs = pipeline::ReadCameraInput(options, clip.width, clip.height);
+  if (!inputs) {
+    return inputs;
   }
   if (options.rs == pipeline::RsChoice::kOff || options.rs == pipeline::RsChoice::kDiffusion) {
     return inputs;
   }
 
-  igf::GyroParseOptions parse;
-  if (!options.gyro_axes.empty()) {
-    const auto axes = igf::ParseAxisString(options.gyro_axes);
-    if (!axes) {
-      return Propagate(axes.error(), "--gyro-axes");
-    }
-    parse.camera_from_sensor = *axes;
+  const auto parse = pipeline::GyroParseOptionsFrom(options);
+  if (!parse) {
+    return Propagate(parse.error());
   }
 
   const bool named = !options.gyro_file.empty();
@@ -99,7 +75,7 @@ Result<pipeline::RsInputs> ReadRsInputs(const pipeline::StabilizeOptions& option
     return inputs;
   }
   auto recording =
-      named ? ReadNamedGyro(options.gyro_file, parse) : ReadTelemetryGyro(clip.path, parse);
+      named ? ReadNamedGyro(options.gyro_file, *parse) : ReadTelemetryGyro(clip.path, *parse);
   if (!recording) {
     if (named || options.rs == pipeline::RsChoice::kGyro) {
       return Propagate(recording.error());
@@ -107,15 +83,8 @@ Result<pipeline::RsInputs> ReadRsInputs(const pipeline::StabilizeOptions& option
     logger->warn("the clip's telemetry is not used: {}", recording.error().message);
     return inputs;
   }
-  inputs.gyro_origin = named ? options.gyro_file : clip.path;
-  inputs.gyro_shares_clock = !named;
-  for (const std::string& note : recording->notes) {
-    logger->warn("{}: {}", inputs.gyro_origin, note);
-  }
-  if (!inputs.readout_s) {
-    inputs.readout_s = recording->readout_s;
-  }
-  inputs.gyro = std::move(recording->gyro);
+  inputs->gyro_shares_clock = !named;
+  pipeline::AddGyro(std::move(*recording), named ? options.gyro_file : clip.path, logger, *inputs);
   return inputs;
 }
 

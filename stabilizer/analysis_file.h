@@ -39,6 +39,7 @@ struct ClipAnalysis {
   int width = 0;  // analysed (full) size, px
   int height = 0;
   double frames_per_second = 0.0;
+  double seconds_per_tick = 0.0;  // of FrameAnalysis::pts; 0: not known
   std::int64_t num_frames = 0;
   // Smallest crop_ratio over all frames: the one that a fixed zoom has to use throughout.
   double smallest_crop_ratio = 1.0;
@@ -77,7 +78,14 @@ class AnalysisWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-// Reads records in order; memory for one record.
+// By what a record is found: when its frame is shown, what it looks like, where the record lies.
+struct RecordKey {
+  std::int64_t pts = 0;
+  std::uint64_t offset = 0;  // byte in the file
+  LumaFingerprint fingerprint{};
+};
+
+// Reads records in order, or any of them by its key; memory for one record.
 class AnalysisReader {
  public:
   // Errors: kNotFound; kCorruptData (not an analysis file, cut off, a checksum differs);
@@ -90,6 +98,12 @@ class AnalysisReader {
   [[nodiscard]] const ClipAnalysis& clip() const;
   // The next record; empty at the end.
   [[nodiscard]] Result<std::optional<FrameAnalysis>> Next();
+  // The keys of all records, in the file's order. Follows the records' lengths only: a record is
+  // checked when it is read, and so is its key then. Next() begins anew.
+  [[nodiscard]] Result<std::vector<RecordKey>> ReadKeys();
+  // The record of a key. Next() goes on after it. kCorruptData also when the key is not the
+  // record's.
+  [[nodiscard]] Result<FrameAnalysis> ReadAt(const std::vector<RecordKey>& keys, std::size_t index);
 
  private:
   struct Impl;

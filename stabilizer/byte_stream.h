@@ -24,10 +24,13 @@ class ByteSink {
   template <Scalar T>
   void Put(T value) {
     const auto* raw = reinterpret_cast<const std::uint8_t*>(&value);
-    bytes_.insert(bytes_.end(), raw, raw + sizeof(T));
+    Put(std::span(raw, sizeof(T)));
   }
   void Put(std::span<const std::uint8_t> raw) {
-    bytes_.insert(bytes_.end(), raw.begin(), raw.end());
+    // One by one: GCC 12 sees overflows in insert() and copy() that are not there.
+    for (const std::uint8_t byte : raw) {
+      bytes_.push_back(byte);
+    }
   }
   [[nodiscard]] std::span<const std::uint8_t> bytes() const { return bytes_; }
   void Clear() { bytes_.clear(); }

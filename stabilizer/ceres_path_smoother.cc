@@ -63,6 +63,15 @@ constexpr double kLocalDataWeight = 2.0;
 constexpr double kNeighbourWeight = 4.0;
 constexpr double kMaxLocalUpdate = 8.0 / kReferenceWidthPx;
 
+// With a short look-ahead the window goes on with frames that nobody has seen yet, up to this share
+// of smoothness_s beyond the frames to be decided: the path then knows where it is heading. The
+// guess is the mean motion of the last kIntentWindowS, dying away within kIntentDecayS.
+constexpr double kGuessShare = 0.6;
+constexpr double kIntentWindowS = 0.5;
+constexpr double kIntentDecayS = 0.5;
+// Frames decided at once, as a share of the look-ahead: each solve costs the same.
+constexpr int kCommitShare = 4;
+
 constexpr int kMaxIterations = 12;
 constexpr std::size_t kHistory = 3;  // decided frames that the next window leans on
 
@@ -97,29 +106,33 @@ class CeresPathSmoother final : public PathSmoother {
       : options_(options),
         points_(MakePathPoints(options.aspect)),
         modes_(options.mesh_columns, options.mesh_rows, kMaxModeOrder) {
-    const double frames = options.smoothness_s * options.frames_per_second;
-    look_ahead_ = static_cast<std::size_t>(std::clamp(std::lround(2.0 * frames), 30L, 240L));
-    commit_ = std::max<std::size_t>(look_ahead_ / 2, 15);
-    const double radians_per_frame = 2.0 * std::numbers::pi / std::max(frames, 1.0);
-    // Square roots of the weights, since residuals are squared.
-    acceleration_weight_ = std::pow(kAccelerationCutoff * radians_per_frame, -2.0);
-    jerk_weight_ = std::pow(kJerkCutoff * radians_per_frame, -3.0);
+    UpdateWeights();
+    if (options.lookahead_frames) {
+      // commit_ + look_ahead_ open frames set off a decision: one more than the look-ahead.
+      const auto delay = static_cast<std::size_t>(*options.lookahead_frames);
+      commit_ = std::max<std::size_t>(1, delay / kCommitShare);
+      look_ahead_ = delay + 1 - commit_;
+    } else {
+      look_ahead_ =
+          static_cast<std::size_t>(std::clamp(std::lround(2.0 * SmoothnessFrames()), 30L, 240L));
+      commit_ = std::max<std::size_t>(look_ahead_ / 2, 15);
+    }
   }
 
   Status Push(const FrameMotion& motion) override {
-    if (motion.path_begins && decided_ < nodes_.size()) {
-      if (Status ok = DecideAll(); !ok) {
+    if (motion.path_begins) {
+      if (Status ok = Finish(); !ok) {
         return ok;
       }
-    }
-    if (motion.path_begins) {
       nodes_.clear();
       decided_ = 0;
+      path_ended_ = false;
     }
     Node node;
     node.motion = motion;
     node.motion.path_begins = nodes_.empty();
     AppendLocalPath(node);
+    FollowIntent(node.motion);
     nodes_.push_back(std::move(node));
     if (nodes_.size() - decided_ >= commit_ + look_ahead_) {
       return Decide(commit_);
@@ -127,11 +140,33 @@ class CeresPathSmoother final : public PathSmoother {
     return {};
   }
 
-  Status Finish() override { return DecideAll(); }
+  Status Finish() override {
+    path_ended_ = true;
+    return DecideAll();
+  }
+
+  Status Update(const PathSmootherOptions& options) override {
+    options_.smoothness_s = options.smoothness_s;
+    options_.tripod = options.tripod;
+    options_.min_crop_ratio = options.min_crop_ratio;
+    UpdateWeights();
+    return {};
+  }
 
   std::vector<PathUpdate> TakeReady() override { return std::exchange(ready_, {}); }
 
  private:
+  [[nodiscard]] double SmoothnessFrames() const {
+    return options_.smoothness_s * options_.frames_per_second;
+  }
+
+  // Square roots of the weights, since residuals are squared.
+  void UpdateWeights() {
+    const double radians_per_frame = 2.0 * std::numbers::pi / std::max(SmoothnessFrames(), 1.0);
+    acceleration_weight_ = std::pow(kAccelerationCutoff * radians_per_frame, -2.0);
+    jerk_weight_ = std::pow(kJerkCutoff * radians_per_frame, -3.0);
+  }
+
   void AppendLocalPath(Node& node) const {
     std::vector<Eigen::Vector2d> step(modes_.count(), Eigen::Vector2d::Zero());
     if (!node.motion.local.empty() && !nodes_.empty()) {
@@ -160,6 +195,7 @@ class CeresPathSmoother final : public PathSmoother {
   // Solves over all frames at hand and decides the next `count`.
   Status Decide(std::size_t count) {
     if (options_.smoothness_s > 0.0 || options_.tripod) {
+      const GuessedFrames guessed(*this, count);
       UpdatePanWeights();
       if (Status ok = SolveGlobal(); !ok) {
         return ok;
@@ -177,6 +213,53 @@ class CeresPathSmoother final : public PathSmoother {
       --decided_;
     }
     return {};
+  }
+
+  // Adds the frames to be guessed for a decision on `count` frames, and takes them off again.
+  class GuessedFrames {
+   public:
+    GuessedFrames(CeresPathSmoother& smoother, std::size_t count) : smoother_(smoother) {
+      smoother_.num_guessed_ = smoother_.AppendGuesses(count);
+    }
+    ~GuessedFrames() {
+      smoother_.nodes_.resize(smoother_.nodes_.size() - smoother_.num_guessed_);
+      smoother_.num_guessed_ = 0;
+    }
+    GuessedFrames(const GuessedFrames&) = delete;
+    GuessedFrames& operator=(const GuessedFrames&) = delete;
+
+   private:
+    CeresPathSmoother& smoother_;
+  };
+
+  std::size_t AppendGuesses(std::size_t count) {
+    const auto horizon = static_cast<std::size_t>(std::lround(kGuessShare * SmoothnessFrames()));
+    const std::size_t seen = nodes_.size() - decided_ - count;
+    if (!options_.lookahead_frames || path_ended_ || seen >= horizon) {
+      return 0;
+    }
+    for (std::size_t k = 1; k <= horizon - seen; ++k) {
+      Node guess;
+      const double decay =
+          std::exp(-static_cast<double>(k) / (kIntentDecayS * options_.frames_per_second));
+      guess.motion.to_from.topRightCorner<2, 1>() = decay * intent_;
+      guess.theta = nodes_.back().theta;
+      guess.local_path = nodes_.back().local_path;
+      guess.local_smooth = nodes_.back().local_smooth;
+      nodes_.push_back(std::move(guess));
+    }
+    return horizon - seen;
+  }
+
+  // Mean motion from one frame to the next of late: what the camera means to do.
+  void FollowIntent(const FrameMotion& motion) {
+    if (motion.path_begins) {
+      intent_.setZero();
+      return;
+    }
+    const double share = 1.0 / std::max(1.0, kIntentWindowS * options_.frames_per_second);
+    const Eigen::Matrix3d& f = motion.to_from;
+    intent_ += share * (Eigen::Vector2d(f.block<2, 1>(0, 2) / f(2, 2)) - intent_);
   }
 
   // Gaussian mean of the camera's speed around every open frame.
@@ -241,8 +324,8 @@ class CeresPathSmoother final : public PathSmoother {
 
   template <typename Predicate>
   [[nodiscard]] bool AnyOpen(const Predicate& predicate) const {
-    return std::any_of(nodes_.begin() + static_cast<std::ptrdiff_t>(decided_), nodes_.end(),
-                       predicate);
+    return std::any_of(nodes_.begin() + static_cast<std::ptrdiff_t>(decided_),
+                       nodes_.end() - static_cast<std::ptrdiff_t>(num_guessed_), predicate);
   }
 
   [[nodiscard]] bool IsBent(const Node& node) const {
@@ -422,8 +505,11 @@ class CeresPathSmoother final : public PathSmoother {
   std::size_t commit_ = 30;
   double acceleration_weight_ = 0.0;
   double jerk_weight_ = 0.0;
-  std::deque<Node> nodes_;   // kHistory decided frames, then the open ones
-  std::size_t decided_ = 0;  // how many of them are decided
+  std::deque<Node> nodes_;       // kHistory decided frames, then the open ones
+  std::size_t decided_ = 0;      // how many of them are decided
+  std::size_t num_guessed_ = 0;  // at the end of nodes_, while a window is solved
+  bool path_ended_ = false;      // no frame will be added to nodes_
+  Eigen::Vector2d intent_ = Eigen::Vector2d::Zero();
   std::vector<PathUpdate> ready_;
 };
 
@@ -534,13 +620,14 @@ Result<std::unique_ptr<PathSmoother>> MakeCeresPathSmoother(const PathSmootherOp
   if (!(options.aspect > 0.0) || !(options.frames_per_second > 0.0) ||
       !(options.focal_ratio > 0.0) || !(options.smoothness_s >= 0.0) ||
       !(options.min_crop_ratio > 0.0 && options.min_crop_ratio <= 1.0) ||
-      options.mesh_columns < 1 || options.mesh_rows < 1) {
+      options.mesh_columns < 1 || options.mesh_rows < 1 ||
+      options.lookahead_frames.value_or(0) < 0) {
     return Fail(ErrorCode::kInvalidArgument,
                 "path smoother: aspect {}, {} fps, focal ratio {}, smoothness {} s, crop ratio {}, "
-                "mesh {}x{}: all must be positive, the crop ratio at most 1",
+                "mesh {}x{}, look-ahead {}: all must be positive, the crop ratio at most 1",
                 options.aspect, options.frames_per_second, options.focal_ratio,
                 options.smoothness_s, options.min_crop_ratio, options.mesh_columns,
-                options.mesh_rows);
+                options.mesh_rows, options.lookahead_frames.value_or(0));
   }
   return std::make_unique<CeresPathSmoother>(options);
 }

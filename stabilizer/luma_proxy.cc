@@ -10,13 +10,14 @@ namespace {
 
 constexpr int kFingerprintSide = 8;
 
-// Wraps a plane without copying; OpenCV only reads it.
+// Wraps a plane without copying, its rows in the order of memory; OpenCV only reads it.
 cv::Mat WrapPlane(const PlaneView& plane, int depth, int channels) {
+  const std::ptrdiff_t lowest = plane.stride < 0 ? plane.stride * (plane.height - 1) : 0;
   // cv::Mat has no const view; the header is local and never written through.
-  auto* data =
-      const_cast<std::uint8_t*>(plane.data);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+  auto* data = const_cast<std::uint8_t*>(  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+      plane.data + lowest);
   return {plane.height, plane.width, CV_MAKETYPE(depth, channels), data,
-          static_cast<std::size_t>(plane.stride)};
+          static_cast<std::size_t>(plane.stride < 0 ? -plane.stride : plane.stride)};
 }
 
 }  // namespace
@@ -56,6 +57,9 @@ Result<GrayImage> MakeLumaProxy(const FrameView& frame) {
     }
     const double to_8_bit = 1.0 / static_cast<double>(1 << (frame.layout.bit_depth - 8));
     small.convertTo(result, CV_8U, to_8_bit);
+    if (frame.planes[0].stride < 0) {
+      cv::flip(result, result, 0);
+    }
   } catch (const cv::Exception& e) {
     return Fail(ErrorCode::kInternal, "scaling a frame of {}x{} down failed: {}", frame.width,
                 frame.height, e.what());

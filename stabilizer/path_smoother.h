@@ -3,6 +3,7 @@
 #define RSSTAB_STABILIZER_PATH_SMOOTHER_H_
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "igf/base/result.h"
@@ -26,6 +27,9 @@ struct PathSmootherOptions {
   bool rotation_known = false;
   int mesh_columns = 16;
   int mesh_rows = 16;
+  // Every frame is decided at the latest when this many more have been pushed; below 2 smoothness_s
+  // the camera's intent beyond them is guessed. Empty: as many as serve the result best.
+  std::optional<int> lookahead_frames;
 };
 
 // Turns a jerky bundle of camera paths into a smooth one, frame by frame with a look-ahead; bounded
@@ -39,6 +43,10 @@ class PathSmoother {
 
   // No more frames will come: everything left becomes ready.
   [[nodiscard]] virtual Status Finish() = 0;
+
+  // Takes smoothness_s, tripod and min_crop_ratio of `options` for the frames not decided yet.
+  // Errors: kInvalidArgument, and nothing changes.
+  [[nodiscard]] virtual Status Update(const PathSmootherOptions& options) = 0;
 
   // Updates decided since the last call, one per frame, in order.
   [[nodiscard]] virtual std::vector<PathUpdate> TakeReady() = 0;

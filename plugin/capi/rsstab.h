@@ -230,7 +230,7 @@ RSSTAB_API rsstab_status rsstab_create_analyze(rsstab_options* options, const rs
  * fingerprints are compared now and then. When they do not fit (the clip was cut at its start, so
  * that all times are shifted), a record whose fingerprint fits is looked for, and its time shift
  * kept. A frame without a record is handed on unchanged: RSSTAB_UNCHANGED. Seeking and rewinding
- * cost nothing. Memory: 24 bytes for each frame of the file. */
+ * cost nothing. Memory: 100 bytes for each frame of the file. */
 RSSTAB_API rsstab_status rsstab_create_apply(rsstab_options* options, const rsstab_video* video,
                                              const char* path, rsstab_instance** instance);
 
@@ -253,8 +253,9 @@ typedef void (*rsstab_release_function)(void* frame_data);
 /* The next frame in presentation order. `pts`: its time in ticks; comes out unchanged with the
  * steady frame. `frame_data`: anything of the caller's, comes out with the frame, too. `release`
  * NULL: the picture is copied before the call returns. Otherwise it is read where it is until
- * `release(frame_data)` is called; after a failure it is not called, and the frame is the caller's
- * as before. */
+ * `release(frame_data)` is called; unless the answer is RSSTAB_OK it is not called, and the frame
+ * is the caller's as before. RSSTAB_AGAIN: steady frames wait; pull them, then push this one again.
+ */
 RSSTAB_API rsstab_status rsstab_push(rsstab_instance* instance, const rsstab_picture* picture,
                                      int64_t pts, void* frame_data,
                                      rsstab_release_function release);
@@ -266,7 +267,8 @@ RSSTAB_API rsstab_status rsstab_peek(rsstab_instance* instance, int64_t* pts, vo
 /* Renders the next steady frame into `buffer` and takes it off: RSSTAB_OK (RSSTAB_UNCHANGED),
  * RSSTAB_AGAIN or RSSTAB_END. Frames come in the order they went in. `pts`, `frame_data`: may be
  * NULL; where the frame was handed over, it is released before the call returns, so take what is
- * needed of it after rsstab_peek(). A frame that fails is taken off, too. */
+ * needed of it after rsstab_peek(). A frame that fails is taken off, too, unless it was the
+ * buffer's fault (RSSTAB_ERROR_INVALID_ARGUMENT). */
 RSSTAB_API rsstab_status rsstab_pull(rsstab_instance* instance, const rsstab_buffer* buffer,
                                      int64_t* pts, void** frame_data);
 

@@ -44,6 +44,17 @@ struct Analyzer::Impl {
   std::unique_ptr<TrackSpool> spool;  // only while the source waits for the tracks
   std::vector<PointTracks> sync_tracks;
   std::int64_t num_frames = 0;
+  // The clip's clock: first and last frame in ticks and in seconds.
+  std::int64_t first_pts = 0;
+  std::int64_t last_pts = 0;
+  double first_s = 0.0;
+  double last_s = 0.0;
+
+  [[nodiscard]] double SecondsPerTick() const {
+    return last_pts > first_pts && last_s > first_s
+               ? (last_s - first_s) / static_cast<double>(last_pts - first_pts)
+               : 0.0;
+  }
 
   Status StartStage(Result<RsSelection> selected) {
     if (!selected) {
@@ -148,6 +159,12 @@ Status Analyzer::PushFrame(const FrameView& frame, std::int64_t pts, double time
   observation.fingerprint = stabilizer::FingerprintOf(*proxy);
   observation.attempted_points = tracked->attempted;
   observation.tracks = std::move(tracked->tracks);
+  if (s.num_frames == 0) {
+    s.first_pts = pts;
+    s.first_s = time_s;
+  }
+  s.last_pts = pts;
+  s.last_s = time_s;
   ++s.num_frames;
   if (s.stage) {
     return s.Advance(observation, &frame);
@@ -183,6 +200,7 @@ Result<stabilizer::ClipAnalysis> Analyzer::Finish(const std::function<bool()>& c
   clip.width = s.clip.width;
   clip.height = s.clip.height;
   clip.frames_per_second = s.clip.frames_per_second;
+  clip.seconds_per_tick = s.SecondsPerTick();
   clip.num_frames = s.num_frames;
   clip.fixed_zoom = s.options.zoom == ZoomMode::kFixed || s.options.tripod;
   clip.rs_source = s.selection.source ? s.selection.source->Name() : "none";

@@ -4,12 +4,14 @@
 #include <cmath>
 #include <deque>
 #include <utility>
+#include <variant>
 
 #include "igf/base/rotation.h"
 #include "stabilizer/crop_planner.h"
 #include "stabilizer/global_motion.h"
 #include "stabilizer/mesh_motion.h"
 #include "stabilizer/normalized_coordinates.h"
+#include "stabilizer/online_zoom_planner.h"
 #include "stabilizer/path_smoother.h"
 #include "stabilizer/pipeline/warp_assembly.h"
 #include "stabilizer/scene_cut.h"
@@ -24,6 +26,12 @@ using stabilizer::RectifiedMatch;
 // The smoother's zoom hides most of every border; what is left is planned over this long to either
 // side of a frame that needs it.
 constexpr double kZoomReachS = 0.4;
+// A look-ahead is shared: this part of it is the zoom planner's, unless that wants less.
+constexpr int kZoomShare = 4;
+// Where the look-ahead is too short for the planner, zooming out is held back for kZoomHoldS and
+// then changes by no more than this a second.
+constexpr double kZoomHoldS = 1.0;
+constexpr double kMaxWideningPerS = 0.05;
 // Focal length where nobody knows it, in picture widths (64 degrees): phones and action cameras in
 // their linear modes lie between 0.6 and 1.0.
 constexpr double kDefaultFocalRatio = 0.8;
@@ -32,8 +40,10 @@ constexpr int kRectifySteps = 3;
 
 stabilizer::PathSmootherOptions SmootherOptions(const StabilizeOptions& options,
                                                 const ClipGeometry& clip,
-                                                const RsSelection& selection) {
+                                                const RsSelection& selection,
+                                                std::optional<int> lookahead_frames) {
   stabilizer::PathSmootherOptions smoother;
+  smoother.lookahead_frames = lookahead_frames;
   smoother.aspect = static_cast<double>(clip.height) / clip.width;
   smoother.frames_per_second = clip.frames_per_second;
   smoother.smoothness_s = options.smoothness_s;
@@ -51,11 +61,43 @@ stabilizer::PathSmootherOptions SmootherOptions(const StabilizeOptions& options,
   return smoother;
 }
 
+using AnyZoomPlanner = std::variant<stabilizer::ZoomPlanner, stabilizer::OnlineZoomPlanner>;
+
+// How a look-ahead is shared between smoother and zoom planner.
+struct Lookahead {
+  std::optional<int> smoother;
+  std::optional<std::size_t> zoom;  // empty: as long as the planner wants
+};
+
+Lookahead ShareLookahead(std::optional<int> frames, double frames_per_second) {
+  if (!frames) {
+    return {};
+  }
+  const auto wanted = 2 * static_cast<int>(std::lround(kZoomReachS * frames_per_second));
+  const int zoom = std::min(*frames / kZoomShare, wanted);
+  Lookahead shared;
+  shared.smoother = *frames - zoom;
+  if (zoom < wanted) {
+    shared.zoom = static_cast<std::size_t>(zoom);
+  }
+  return shared;
+}
+
+AnyZoomPlanner MakeZoomPlanner(std::optional<std::size_t> lookahead, double frames_per_second) {
+  if (!lookahead) {
+    return stabilizer::ZoomPlanner(
+        static_cast<std::size_t>(std::lround(kZoomReachS * frames_per_second)));
+  }
+  return stabilizer::OnlineZoomPlanner(
+      *lookahead, static_cast<std::size_t>(std::lround(kZoomHoldS * frames_per_second)),
+      kMaxWideningPerS / frames_per_second);
+}
+
 }  // namespace
 
 struct MotionStage::Impl {
   Impl(const StabilizeOptions& stabilize_options, const ClipGeometry& geometry,
-       RsSelection* rs_selection, Logger log)
+       RsSelection* rs_selection, Logger log, const Lookahead& shared)
       : options(stabilize_options),
         clip(geometry),
         selection(rs_selection),
@@ -63,7 +105,8 @@ struct MotionStage::Impl {
         mesh(stabilize_options.mesh_columns, stabilize_options.mesh_rows,
              static_cast<double>(geometry.height) / geometry.width),
         mesh_solver(mesh),
-        zoom(static_cast<std::size_t>(std::lround(kZoomReachS * geometry.frames_per_second))) {}
+        lookahead(shared),
+        zoom(MakeZoomPlanner(shared.zoom, geometry.frames_per_second)) {}
 
   StabilizeOptions options;
   ClipGeometry clip;
@@ -72,7 +115,8 @@ struct MotionStage::Impl {
   stabilizer::MeshGrid mesh;
   stabilizer::MeshMotionSolver mesh_solver;
   std::unique_ptr<stabilizer::PathSmoother> smoother;
-  stabilizer::ZoomPlanner zoom;
+  Lookahead lookahead;
+  AnyZoomPlanner zoom;
 
   std::int64_t num_frames = 0;
   std::int64_t num_without_rs = 0;  // frames that the RS source could not tell
@@ -207,14 +251,14 @@ struct MotionStage::Impl {
       if (options.zoom == ZoomMode::kFixed && options.fixed_zoom) {
         allowed = std::min(allowed, 1.0 / *options.fixed_zoom);
       }
-      zoom.Push(allowed, frame.path_begins);
+      std::visit([&](auto& planner) { planner.Push(allowed, frame.path_begins); }, zoom);
       waiting_for_zoom.push_back(std::move(frame));
     }
     TakeZooms();
   }
 
   void TakeZooms() {
-    for (const double ratio : zoom.TakeReady()) {
+    for (const double ratio : std::visit([](auto& planner) { return planner.TakeReady(); }, zoom)) {
       waiting_for_zoom.front().crop_ratio = ratio;
       ready.push_back(std::move(waiting_for_zoom.front()));
       waiting_for_zoom.pop_front();
@@ -227,19 +271,28 @@ MotionStage::~MotionStage() = default;
 
 Result<std::unique_ptr<MotionStage>> MotionStage::Create(const StabilizeOptions& options,
                                                          const ClipGeometry& clip,
-                                                         RsSelection* selection, Logger logger) {
+                                                         RsSelection* selection, Logger logger,
+                                                         std::optional<int> lookahead_frames) {
   if (clip.width < 1 || clip.height < 1 || !(clip.frames_per_second > 0.0)) {
     return Fail(ErrorCode::kInvalidArgument,
                 "a clip of {}x{} at {} frames per second is not possible", clip.width, clip.height,
                 clip.frames_per_second);
   }
-  auto smoother = stabilizer::MakeCeresPathSmoother(SmootherOptions(options, clip, *selection));
+  const Lookahead lookahead = ShareLookahead(lookahead_frames, clip.frames_per_second);
+  auto smoother = stabilizer::MakeCeresPathSmoother(
+      SmootherOptions(options, clip, *selection, lookahead.smoother));
   if (!smoother) {
     return Propagate(std::move(smoother.error()));
   }
-  auto impl = std::make_unique<Impl>(options, clip, selection, std::move(logger));
+  auto impl = std::make_unique<Impl>(options, clip, selection, std::move(logger), lookahead);
   impl->smoother = std::move(*smoother);
   return std::unique_ptr<MotionStage>(new MotionStage(std::move(impl)));
+}
+
+Status MotionStage::Update(const StabilizeOptions& options) {
+  Impl& s = *impl_;
+  s.options = options;
+  return s.smoother->Update(SmootherOptions(options, s.clip, *s.selection, s.lookahead.smoother));
 }
 
 Status MotionStage::Push(const FrameObservation& observation, const FrameView* image) {
@@ -267,7 +320,7 @@ Status MotionStage::Finish() {
     return ok;
   }
   s.TakeUpdates();
-  s.zoom.Finish();
+  std::visit([](auto& planner) { planner.Finish(); }, s.zoom);
   s.TakeZooms();
   if (s.num_without_rs > 0) {
     s.logger->warn("{} of {} frames keep their rolling shutter: the {} source has no data for them",

@@ -39,17 +39,20 @@ struct RsSelection {
 class MotionStage {
  public:
   // `source` may look at pictures only if it says so (RsMotionSource::NeedsImage), and then `image`
-  // must be given to Push. Errors: kInvalidArgument for options out of range.
-  [[nodiscard]] static Result<std::unique_ptr<MotionStage>> Create(const StabilizeOptions& options,
-                                                                   const ClipGeometry& clip,
-                                                                   RsSelection* selection,
-                                                                   Logger logger);
+  // must be given to Push. `lookahead_frames`: every frame is decided at the latest when this many
+  // more have been pushed; empty: as many as serve the result best.
+  // Errors: kInvalidArgument for options out of range.
+  [[nodiscard]] static Result<std::unique_ptr<MotionStage>> Create(
+      const StabilizeOptions& options, const ClipGeometry& clip, RsSelection* selection,
+      Logger logger, std::optional<int> lookahead_frames = std::nullopt);
   ~MotionStage();
   MotionStage(const MotionStage&) = delete;
   MotionStage& operator=(const MotionStage&) = delete;
 
   [[nodiscard]] Status Push(const FrameObservation& observation, const FrameView* image = nullptr);
   [[nodiscard]] Status Finish();
+  // Takes smoothness, tripod and crop of `options` for the frames not decided yet.
+  [[nodiscard]] Status Update(const StabilizeOptions& options);
   // Frames decided since the last call.
   [[nodiscard]] std::vector<stabilizer::FrameAnalysis> TakeReady();
 

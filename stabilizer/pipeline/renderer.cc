@@ -4,11 +4,8 @@
 #include <optional>
 #include <utility>
 
-#include "igf/base/parallel_for.h"
 #include "stabilizer/luma_proxy.h"
-#include "stabilizer/pipeline/covered_map.h"
-#include "stabilizer/pipeline/warp_assembly.h"
-#include "stabilizer/plane_warper.h"
+#include "stabilizer/pipeline/frame_renderer.h"
 
 namespace rsstab::pipeline {
 namespace {
@@ -21,28 +18,15 @@ constexpr double kMaxFingerprintDistance = 4.0;
 }  // namespace
 
 struct Renderer::Impl {
-  Impl(std::unique_ptr<stabilizer::AnalysisReader> analysis, const StabilizeOptions& render_options,
-       Logger log)
+  Impl(std::unique_ptr<stabilizer::AnalysisReader> analysis, const StabilizeOptions& options)
       : reader(std::move(analysis)),
-        options(render_options),
-        logger(std::move(log)),
-        workers(ResolveThreadCount(render_options.num_threads)),
-        grid(stabilizer::DefaultMapGrid(reader->clip().width, reader->clip().height)) {}
+        frames({reader->clip().width, reader->clip().height, reader->clip().width,
+                reader->clip().height, reader->clip().camera},
+               options) {}
 
   std::unique_ptr<stabilizer::AnalysisReader> reader;
-  StabilizeOptions options;
-  Logger logger;
-  WorkerPool workers;
-  stabilizer::MapGrid grid;
-  stabilizer::PlaneWarper warper;
+  FrameRenderer frames;
   std::int64_t num_frames = 0;
-
-  [[nodiscard]] stabilizer::BackwardMap Compose(const stabilizer::FrameAnalysis& frame) const {
-    const stabilizer::ClipAnalysis& clip = reader->clip();
-    const double crop = clip.fixed_zoom ? clip.smallest_crop_ratio : frame.crop_ratio;
-    return ComposeCoveredMap(AssembleWarp(frame, clip.width, clip.height, clip.camera), crop, grid)
-        .map;
-  }
 };
 
 Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -50,7 +34,7 @@ Renderer::~Renderer() = default;
 
 Result<std::unique_ptr<Renderer>> Renderer::Create(const StabilizeOptions& options,
                                                    const std::string& analysis_path, int width,
-                                                   int height, Logger logger) {
+                                                   int height, Logger /*logger*/) {
   auto reader = stabilizer::AnalysisReader::Open(analysis_path);
   if (!reader) {
     return Propagate(std::move(reader.error()));
@@ -62,7 +46,7 @@ Result<std::unique_ptr<Renderer>> Renderer::Create(const StabilizeOptions& optio
                 analysis_path, clip.width, clip.height, width, height);
   }
   return std::unique_ptr<Renderer>(
-      new Renderer(std::make_unique<Impl>(std::move(*reader), options, std::move(logger))));
+      new Renderer(std::make_unique<Impl>(std::move(*reader), options)));
 }
 
 const stabilizer::ClipAnalysis& Renderer::clip() const { return impl_->reader->clip(); }
@@ -104,9 +88,9 @@ Result<Frame> Renderer::Render(const Frame& frame, std::int64_t pts) {
     return Propagate(std::move(output.error()));
   }
   output->origin = frame.origin;
-  if (Status ok =
-          s.warper.Warp(view, s.Compose(analysis), s.options.interpolation, *output, s.workers);
-      !ok) {
+  const stabilizer::ClipAnalysis& clip = s.reader->clip();
+  const double crop = clip.fixed_zoom ? clip.smallest_crop_ratio : analysis.crop_ratio;
+  if (Status ok = s.frames.Render(view, analysis, crop, *output); !ok) {
     return Propagate(std::move(ok.error()));
   }
   ++s.num_frames;
