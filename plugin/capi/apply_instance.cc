@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <deque>
+#include <string>
 #include <utility>
 
 #include "plugin/capi/instance.h"
@@ -9,6 +11,7 @@ namespace rsstab::capi {
 namespace {
 
 constexpr std::size_t kMaxWaiting = 4;
+constexpr double kMaxTicks = 9e18;  // below 2^63
 
 class ApplyInstance final : public Instance {
  public:
@@ -68,6 +71,17 @@ class ApplyInstance final : public Instance {
       return destination.error();
     }
     return RenderView(*view, pts, *destination);
+  }
+
+  Reply FrameTime(std::int64_t index, std::int64_t& pts) const override {
+    const auto time_s = renderer_->TimeOf(index);
+    const double ticks = time_s.value_or(0.0) / format_.seconds_per_tick;
+    if (!time_s || !(std::abs(ticks) < kMaxTicks)) {
+      return {RSSTAB_ERROR_INVALID_ARGUMENT,
+              "the analysis file has no frame " + std::to_string(index)};
+    }
+    pts = std::llround(ticks);
+    return RSSTAB_OK;
   }
 
   Reply Reset() override {

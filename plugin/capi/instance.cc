@@ -20,6 +20,9 @@ Reply Instance::Render(const rsstab_picture& /*picture*/, std::int64_t /*pts*/,
                        const rsstab_buffer& /*buffer*/) {
   return NotHere("rsstab_render(); push and pull");
 }
+Reply Instance::FrameTime(std::int64_t /*index*/, std::int64_t& /*pts*/) const {
+  return NotHere("analysis file to ask");
+}
 Reply Instance::Reset() { return NotHere("second beginning"); }
 Reply Instance::Set(const std::string& name, const std::string& /*value*/) {
   return {RSSTAB_ERROR_UNSUPPORTED,

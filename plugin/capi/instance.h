@@ -42,6 +42,7 @@ class Instance {
   [[nodiscard]] virtual Reply Pull(const rsstab_buffer& buffer, NextFrame& next);
   [[nodiscard]] virtual Reply Render(const rsstab_picture& picture, std::int64_t pts,
                                      const rsstab_buffer& buffer);
+  [[nodiscard]] virtual Reply FrameTime(std::int64_t index, std::int64_t& pts) const;
   [[nodiscard]] virtual Reply Reset();
   [[nodiscard]] virtual Reply Set(const std::string& name, const std::string& value);
   [[nodiscard]] virtual int Delay() const { return 0; }

@@ -289,6 +289,15 @@ rsstab_status rsstab_render(rsstab_instance* instance, const rsstab_picture* pic
   });
 }
 
+rsstab_status rsstab_frame_time(rsstab_instance* instance, int64_t index, int64_t* pts) {
+  return Guarded(instance, [&]() -> Reply {
+    if (pts == nullptr) {
+      return NullArgument("the place for the time");
+    }
+    return instance->mode->FrameTime(index, *pts);
+  });
+}
+
 rsstab_status rsstab_reset(rsstab_instance* instance) {
   return Guarded(instance, [&] { return instance->mode->Reset(); });
 }

@@ -116,6 +116,13 @@ Result<std::unique_ptr<TimedRenderer>> TimedRenderer::Create(const StabilizeOpti
 
 const stabilizer::ClipAnalysis& TimedRenderer::clip() const { return impl_->reader->clip(); }
 
+std::optional<double> TimedRenderer::TimeOf(std::int64_t record) const {
+  if (record < 0 || record >= clip().num_frames) {
+    return std::nullopt;
+  }
+  return impl_->lookup.TimeOf(static_cast<std::size_t>(record));
+}
+
 void TimedRenderer::set_interpolation(stabilizer::Interpolation interpolation) {
   impl_->renderer.set_interpolation(interpolation);
 }

@@ -2,7 +2,9 @@
 #ifndef RSSTAB_STABILIZER_PIPELINE_TIMED_RENDERER_H_
 #define RSSTAB_STABILIZER_PIPELINE_TIMED_RENDERER_H_
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "igf/base/frame.h"
@@ -29,6 +31,9 @@ class TimedRenderer {
   TimedRenderer& operator=(const TimedRenderer&) = delete;
 
   [[nodiscard]] const stabilizer::ClipAnalysis& clip() const;
+  // When the `record`th frame of the file is shown, seconds of the analysed clip's clock; empty: it
+  // has none.
+  [[nodiscard]] std::optional<double> TimeOf(std::int64_t record) const;
   void set_interpolation(stabilizer::Interpolation interpolation);
 
   // Renders the picture shown at `time_s` into `destination`, which has its layout and size.
