@@ -75,7 +75,7 @@ Status Evaluate(const Invocation& invocation, const CommandContext& context) {
   std::ostringstream report;
   const bool of_clips = !invocation.evaluate.clips.empty();
   const Status status =
-      RunAsPass(context, "evaluate", of_clips ? "runs" : "photos",
+      RunAsPass(context, "evaluate", of_clips ? "runs" : "pictures",
                 [&](const evaluation::EvaluationProgress& progress) {
                   return RunEvaluate(invocation.evaluate, context.logger, report, progress);
                 });

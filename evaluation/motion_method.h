@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "igf/base/frame.h"
 #include "igf/base/motion_field.h"
 #include "igf/base/result.h"
+#include "igf/gyro_log.h"
 #include "rsdiff/rotation_curve.h"
 #include "rsdiff/single_image_motion.h"
 
@@ -25,12 +27,24 @@ struct MethodInput {
   std::uint64_t seed = 0;  // for methods that draw numbers
   // The true camera and motion of the picture; null where nobody knows them. For methods that are
   // told (a gyro log, a calibrated lens), not for those that are to find out.
-  const Camera* camera = nullptr;
+  const Camera* camera = nullptr;  // its readout_s too, where known
   const ReadoutCurve* motion = nullptr;
+  const igf::GyroLog* gyro = nullptr;  // at time 0 the picture's middle row was exposed
+  // The frames before and after, where the picture is one of a clip: of its size and layout.
+  const FrameView* previous = nullptr;
+  const FrameView* next = nullptr;
+  double frame_interval_s = 0.0;  // from one to the next; 0 = nobody knows
+  // The row whose instant the answer should refer to; the middle one unless given.
+  std::optional<double> reference_row;
+
+  [[nodiscard]] double ReferenceRow() const {
+    return reference_row.value_or((rs.height - 1) / 2.0);
+  }
 };
 
 struct MethodAnswer {
-  MotionField field;  // of the picture's size; reference row the middle
+  // Of the picture's size. It says its reference row: the one that was asked for, or the middle.
+  MotionField field;
   // Methods that draw rotation curves: each of them, zero at the middle row. Else empty.
   std::vector<rsdiff::RotationCurve> curves;
 };
@@ -43,6 +57,8 @@ class MotionMethod {
   // What tables, CSV and JSON call it.
   [[nodiscard]] virtual std::string Name() const = 0;
 
+  // Errors: kUntrustworthy when the picture does not tell (it is then left as it is); kUnsupported
+  // when the input lacks what the method needs (a gyro log, a second frame).
   [[nodiscard]] virtual Result<MethodAnswer> Estimate(const MethodInput& input) = 0;
 };
 

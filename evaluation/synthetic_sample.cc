@@ -39,14 +39,18 @@ std::vector<std::uint8_t> SourcesInside(const std::vector<Eigen::Vector2f>& disp
   return inside;
 }
 
-std::uint64_t SampleSeed(std::uint64_t seed, std::string_view photo_name,
-                         MotionClass motion_class) {
-  // FNV-1a of the name.
+std::uint64_t HashOfName(std::string_view name) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const char c : photo_name) {
+  for (const char c : name) {
     hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
   }
-  return MixBits(seed ^ MixBits(hash ^ MixBits(static_cast<std::uint64_t>(motion_class))));
+  return hash;
+}
+
+std::uint64_t SampleSeed(std::uint64_t seed, std::string_view photo_name,
+                         MotionClass motion_class) {
+  return MixBits(
+      seed ^ MixBits(HashOfName(photo_name) ^ MixBits(static_cast<std::uint64_t>(motion_class))));
 }
 
 Result<SyntheticSample> MakeSyntheticSample(const FrameView& photo, MotionClass motion_class,

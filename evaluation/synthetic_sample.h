@@ -49,6 +49,9 @@ inline constexpr double kEdgeTolerancePx = 1e-3;
 [[nodiscard]] std::vector<std::uint8_t> SourcesInside(
     const std::vector<Eigen::Vector2f>& displacement, int width, int height);
 
+// A number for a name: always the same one (FNV-1a).
+[[nodiscard]] std::uint64_t HashOfName(std::string_view name);
+
 // The seed of a photo's samples: it depends on the run's seed and the photo's file name, not on
 // what other photos there are.
 [[nodiscard]] std::uint64_t SampleSeed(std::uint64_t seed, std::string_view photo_name,

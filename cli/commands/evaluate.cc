@@ -7,7 +7,7 @@
 
 #include "cli/commands/evaluate_clips.h"
 #include "cli/commands/evaluate_methods.h"
-#include "cli/commands/evaluate_pairs.h"
+#include "cli/commands/evaluate_pictures.h"
 #include "cli/commands/evaluate_synthetic.h"
 #include "igf/base/parallel_for.h"
 #include "igf/base/whole_file.h"
@@ -17,7 +17,7 @@ namespace {
 
 // A long run should not end at a folder that was never there.
 Status CheckOutputFolders(const EvaluateOptions& options) {
-  for (const std::string& file : {options.csv, options.json}) {
+  for (const std::string& file : {options.csv, options.json, options.state}) {
     const std::filesystem::path folder = std::filesystem::path(file).parent_path();
     std::error_code error;
     if (!folder.empty() && !std::filesystem::is_directory(folder, error)) {
@@ -58,12 +58,17 @@ Status RunEvaluate(const EvaluateOptions& options, const Logger& logger, std::os
     // The photographs are what runs in parallel; OpenCV's own threads would only get in the way.
     cv::setNumThreads(1);
   }
-  const auto factory = MakeMethodFactory(options);
+  EvaluateOptions chosen = options;
+  if (options.protocol != EvaluationProtocol::kSyntheticVal &&
+      options.methods == EvaluateOptions().methods) {
+    chosen.methods = kDatasetMethods;
+  }
+  const auto factory = MakeMethodFactory(chosen);
   if (!factory) {
     return Propagate(factory.error());
   }
-  if (options.protocol == EvaluationProtocol::kPairs) {
-    const auto report = EvaluatePairs(options, *factory, logger, progress);
+  if (options.protocol != EvaluationProtocol::kSyntheticVal) {
+    const auto report = EvaluatePictures(chosen, *factory, logger, progress);
     return report ? WriteReport(*report, options, out) : Propagate(report.error());
   }
   const auto report = EvaluateSynthetic(options, *factory, logger, progress);

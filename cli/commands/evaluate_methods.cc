@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/commands/evaluate_methods.h"
 
+#include <algorithm>
+#include <array>
+#include <map>
 #include <memory>
-#include <set>
-#include <sstream>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "cli/commands/method_list.h"
+#include "evaluation/gyro_method.h"
 #include "evaluation/spread_coverage.h"
 #include "rsdiff/model_path.h"
 #include "rsdiff/single_image_motion.h"
@@ -14,6 +18,7 @@
 namespace rsstab::cli {
 namespace {
 
+using evaluation::GyroMethod;
 using evaluation::MethodFactory;
 using evaluation::MethodSet;
 using evaluation::NoCorrection;
@@ -21,87 +26,164 @@ using evaluation::SingleImageMethod;
 using rsdiff::SingleImageEstimator;
 
 const char* const kNone = "none";
+const char* const kGyro = "gyro";
+const char* const kGyroOneStep = "gyro-onestep";
 const char* const kRegression = "regression";
 const char* const kSample = "sample";
 const char* const kMean = "mean";
+const char* const kDiffusion = "diffusion";
+const char* const kReference = "reference";
 
-Result<std::set<std::string>> MethodsOf(const EvaluateOptions& options) {
-  std::set<std::string> wanted;
-  std::istringstream names(options.methods);
-  for (std::string name; std::getline(names, name, ',');) {
-    if (name != kNone && name != kRegression && name != kSample && name != kMean) {
-      return Fail(ErrorCode::kInvalidArgument,
-                  "--methods: there is no method '{}'; choose from none, regression, sample, mean.",
-                  name);
+bool IsNetwork(const std::string& name) {
+  return name == kRegression || name == kSample || name == kMean || name == kDiffusion ||
+         name == kReference;
+}
+
+// Networks of one thread, each loaded once.
+class Estimators {
+ public:
+  explicit Estimators(std::string device) : device_(std::move(device)) {}
+
+  Result<std::shared_ptr<SingleImageEstimator>> Get(const std::string& model) {
+    if (const auto known = loaded_.find(model); known != loaded_.end()) {
+      return known->second;
     }
-    wanted.insert(name);
-  }
-  if (options.regression_model.empty()) {
-    wanted.erase(kRegression);
-  }
-  return wanted;
-}
-
-Result<std::shared_ptr<SingleImageEstimator>> LoadEstimator(const std::string& model,
-                                                            const std::string& device) {
-  const auto path = rsdiff::FindModel(model);
-  if (!path) {
-    return Propagate(path.error());
-  }
-  auto estimator = SingleImageEstimator::Load(*path, {device});
-  if (!estimator) {
-    return Propagate(estimator.error());
-  }
-  return std::make_shared<SingleImageEstimator>(std::move(*estimator));
-}
-
-rsdiff::SamplingOptions SamplingOf(const EvaluateOptions& options, int samples) {
-  rsdiff::SamplingOptions sampling;
-  sampling.samples = samples;
-  sampling.steps = options.steps;
-  sampling.guidance = options.guidance.value_or(sampling.guidance);
-  sampling.eta = options.eta.value_or(sampling.eta);
-  return sampling;
-}
-
-Result<MethodSet> MakeMethods(const EvaluateOptions& options, const std::set<std::string>& wanted) {
-  MethodSet set;
-  set.methods.push_back(std::make_unique<NoCorrection>());
-  if (wanted.contains(kRegression)) {
-    auto estimator = LoadEstimator(options.regression_model, options.device);
+    const auto path = rsdiff::FindModel(model);
+    if (!path) {
+      return Propagate(path.error());
+    }
+    auto estimator = SingleImageEstimator::Load(*path, {device_});
     if (!estimator) {
       return Propagate(estimator.error());
     }
-    rsdiff::SamplingOptions once;
-    once.samples = 1;
-    set.methods.push_back(std::make_unique<SingleImageMethod>(kRegression, std::move(*estimator),
-                                                              once, options.know_focal));
+    return loaded_[model] = std::make_shared<SingleImageEstimator>(std::move(*estimator));
   }
-  if (!wanted.contains(kSample) && !wanted.contains(kMean)) {
-    return set;
+
+ private:
+  std::string device_;
+  std::map<std::string, std::shared_ptr<SingleImageEstimator>> loaded_;
+};
+
+// The options of `evaluate` as one method's settings change them.
+Result<EvaluateOptions> WithSettings(const EvaluateOptions& options, const MethodSpec& method) {
+  EvaluateOptions changed = options;
+  for (const auto& [name, value] : method.settings) {
+    const bool is_known = name == "steps" || name == "samples" || name == "guidance" ||
+                          name == "eta" || name == "model";
+    if (!IsNetwork(method.name) || !is_known) {
+      return Fail(ErrorCode::kInvalidArgument, "--methods: '{}' has no setting '{}'.", method.name,
+                  name);
+    }
+    for (const auto& spec : EvaluateOptionTable()) {
+      if (spec.name == name) {
+        if (Status status = spec.set(changed, value); !status) {
+          return Propagate(status.error(), "--methods: " + method.text);
+        }
+      }
+    }
   }
-  const auto estimator = LoadEstimator(options.model, options.device);
+  return changed;
+}
+
+std::string ModelOf(const EvaluateOptions& options, const MethodSpec& method) {
+  if (method.name == kRegression) {
+    return options.regression_model;
+  }
+  return method.name == kReference ? options.reference_model : options.model;
+}
+
+Result<std::unique_ptr<evaluation::MotionMethod>> MakeNetwork(const EvaluateOptions& options,
+                                                              const MethodSpec& method,
+                                                              Estimators& estimators) {
+  const auto changed = WithSettings(options, method);
+  if (!changed) {
+    return Propagate(changed.error());
+  }
+  auto estimator = estimators.Get(ModelOf(*changed, method));
   if (!estimator) {
     return Propagate(estimator.error());
   }
-  const auto method = [&](const char* name, int samples) {
-    return std::make_unique<SingleImageMethod>(name, *estimator, SamplingOf(options, samples),
-                                               options.know_focal);
+  rsdiff::SamplingOptions sampling;
+  const bool draws_one = method.name == kRegression || method.name == kSample;
+  sampling.samples = draws_one ? 1 : changed->samples;
+  if (method.name != kRegression) {
+    sampling.steps = changed->steps;
+    sampling.guidance = changed->guidance.value_or(sampling.guidance);
+    sampling.eta = changed->eta.value_or(sampling.eta);
+  }
+  return std::make_unique<SingleImageMethod>(method.text, std::move(*estimator), sampling,
+                                             changed->know_focal);
+}
+
+Result<std::unique_ptr<evaluation::MotionMethod>> MakeMethod(const EvaluateOptions& options,
+                                                             const MethodSpec& method,
+                                                             Estimators& estimators) {
+  if (IsNetwork(method.name)) {
+    return MakeNetwork(options, method, estimators);
+  }
+  if (method.name == kGyroOneStep) {
+    const auto bands = method.settings.find("bands");
+    const auto number = bands == method.settings.end()
+                            ? std::optional<std::int64_t>(evaluation::kUsualBands)
+                            : pipeline::ParseInteger(bands->second);
+    if (method.settings.size() > (bands == method.settings.end() ? 0U : 1U) || !number ||
+        *number < 1 || *number > 65535) {
+      return Fail(ErrorCode::kInvalidArgument,
+                  "--methods: {}: its one setting is bands, a whole number from 1.", method.text);
+    }
+    return std::make_unique<GyroMethod>(method.text, static_cast<int>(*number));
+  }
+  if (const auto checked = WithSettings(options, method); !checked) {
+    return Propagate(checked.error());
+  }
+  if (method.name == kGyro) {
+    return std::make_unique<GyroMethod>(method.text, 0);
+  }
+  return Fail(ErrorCode::kInvalidArgument, "--methods: there is no method '{}'; choose from {}.",
+              method.name, PictureMethodNames());
+}
+
+Result<MethodSet> MakeMethods(const EvaluateOptions& options,
+                              const std::vector<MethodSpec>& wanted) {
+  MethodSet set;
+  set.methods.push_back(std::make_unique<NoCorrection>());
+  Estimators estimators(options.device);
+  bool draws = false;
+  for (const MethodSpec& spec : wanted) {
+    auto method = MakeMethod(options, spec, estimators);
+    if (!method) {
+      return Propagate(method.error());
+    }
+    set.methods.push_back(std::move(*method));
+    draws = draws || spec.name == kSample || spec.name == kMean || spec.name == kDiffusion;
+  }
+  if (!draws || options.protocol != EvaluationProtocol::kSyntheticVal) {
+    return set;
+  }
+  const auto estimator = estimators.Get(options.model);
+  if (!estimator) {
+    return Propagate(estimator.error());
+  }
+  const auto sampler = [&](const char* name, int samples) {
+    rsdiff::SamplingOptions sampling;
+    sampling.samples = samples;
+    sampling.steps = options.steps;
+    sampling.guidance = options.guidance.value_or(sampling.guidance);
+    sampling.eta = options.eta.value_or(sampling.eta);
+    return std::make_unique<SingleImageMethod>(name, *estimator, sampling, options.know_focal);
   };
-  if (wanted.contains(kSample)) {
-    set.methods.push_back(method(kSample, 1));
-  }
-  if (wanted.contains(kMean)) {
-    set.methods.push_back(method(kMean, options.samples));
-  }
   if (options.calibration_samples > 0) {
-    set.sampler = method("calibration", options.calibration_samples);
+    set.sampler = sampler("calibration", options.calibration_samples);
   }
-  set.skew = method(kMean, options.samples);
+  set.skew = sampler(kMean, options.samples);
   return set;
 }
 
 }  // namespace
+
+std::string PictureMethodNames() {
+  return "none, gyro, gyro-onestep, diffusion, sample, mean, reference, regression";
+}
 
 Result<MethodFactory> MakeMethodFactory(const EvaluateOptions& options) {
   if (options.calibration_samples > 0 &&
@@ -111,10 +193,16 @@ Result<MethodFactory> MakeMethodFactory(const EvaluateOptions& options) {
                 "{}, or 0 to leave this out.",
                 options.calibration_samples, evaluation::kLeastCoverageSamples);
   }
-  const auto wanted = MethodsOf(options);
+  auto wanted = ParseMethodList(options.methods);
   if (!wanted) {
     return Propagate(wanted.error());
   }
+  // Pictures as they are always come first; networks without weights are not asked.
+  std::erase_if(*wanted, [&](const MethodSpec& method) {
+    return method.text == kNone ||
+           (method.name == kRegression && options.regression_model.empty()) ||
+           (method.name == kReference && options.reference_model.empty());
+  });
   // Loading once here tells what is wrong before any photograph is decoded.
   if (auto tried = MakeMethods(options, *wanted); !tried) {
     return Propagate(tried.error());

@@ -2,13 +2,19 @@
 #ifndef RSSTAB_CLI_COMMANDS_EVALUATE_METHODS_H_
 #define RSSTAB_CLI_COMMANDS_EVALUATE_METHODS_H_
 
+#include <string>
+
 #include "cli/commands/evaluate_options.h"
 #include "evaluation/motion_method.h"
 #include "igf/base/result.h"
 
 namespace rsstab::cli {
 
-// The methods that the options ask for.
+// The names that --methods knows for pictures, separated by commas.
+[[nodiscard]] std::string PictureMethodNames();
+
+// The methods that the options ask for; none (the picture as it is) comes first in any case.
+// regression and reference are left out where no weights are named for them.
 // Errors: kInvalidArgument for an unknown method, or too few calibration samples; those of loading
 // the models, which are tried once here.
 [[nodiscard]] Result<evaluation::MethodFactory> MakeMethodFactory(const EvaluateOptions& options);

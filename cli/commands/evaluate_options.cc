@@ -26,6 +26,44 @@ std::vector<std::pair<std::string, std::string>> DeviceChoices() {
   return choices;
 }
 
+// "rs-real:FOLDER": protocol and folder at once.
+OptionSpec<Options> DatasetOption() {
+  struct Kind {
+    const char* name;
+    EvaluationProtocol protocol;
+    std::string Options::*folder;
+  };
+  static const std::vector<Kind> kinds = {
+      {"rs-real", EvaluationProtocol::kRsReal, &Options::rs_real},
+      {"pairs", EvaluationProtocol::kPairs, &Options::pairs},
+      {"synthetic-val", EvaluationProtocol::kSyntheticVal, &Options::photos},
+      {"clips", EvaluationProtocol::kClips, &Options::clips}};
+  OptionSpec<Options> spec;
+  spec.name = "dataset";
+  spec.value_name = "KIND:FOLDER";
+  spec.set = [](Options& options, const std::string& text) -> Status {
+    for (const Kind& kind : kinds) {
+      const std::string prefix = std::string(kind.name) + ":";
+      if (text.starts_with(prefix) && text.size() > prefix.size()) {
+        options.protocol = kind.protocol;
+        options.*kind.folder = text.substr(prefix.size());
+        return {};
+      }
+    }
+    return pipeline::BadOption(
+        "dataset", text, "rs-real:FOLDER, pairs:FOLDER, synthetic-val:FOLDER or clips:FOLDER");
+  };
+  spec.get = [](const Options& options) -> std::string {
+    for (const Kind& kind : kinds) {
+      if (options.protocol == kind.protocol && !(options.*kind.folder).empty()) {
+        return std::string(kind.name) + ":" + options.*kind.folder;
+      }
+    }
+    return "";
+  };
+  return spec;
+}
+
 OptionTable<Options> BuildTable() {
   OptionTable<Options> table;
   std::string group;
@@ -36,15 +74,32 @@ OptionTable<Options> BuildTable() {
   };
 
   group = "Data";
+  add(DatasetOption(),
+      "What to evaluate on, and where it lies: RS-Real as published or as `simulate --rs-real` "
+      "wrote it, pairs of rolling- and global-shutter pictures, or what --photos and --clips "
+      "name.");
   add(ChoiceOption<Options>("protocol", &Options::protocol,
                             {{"synthetic-val", EvaluationProtocol::kSyntheticVal},
                              {"pairs", EvaluationProtocol::kPairs},
+                             {"rs-real", EvaluationProtocol::kRsReal},
                              {"clips", EvaluationProtocol::kClips}}),
       "What to evaluate on: photographs recorded along known motions, real pictures with their "
       "global-shutter truth, or whole clips.");
   add(TextOption<Options>("photos", "FOLDER", &Options::photos), "synthetic-val: the photographs.");
   add(TextOption<Options>("pairs", "FOLDER", &Options::pairs),
-      "pairs: where to look for folders that hold rs_1.png and gs_1.png.");
+      "pairs: where to look for rs_1.png beside gs_1.png, 001_rolling.png beside "
+      "001_global_middle.png, rs/a.png and gs/a.png, or a_rs.png beside a_gs.png; the true field "
+      "of "
+      "the last two may lie beside as a.flo or a.npz.");
+  add(ChoiceOption<Options>("reference-row", &Options::reference_row,
+                            {{"middle", ReferenceRow::kMiddle}, {"first", ReferenceRow::kFirst}}),
+      "pairs: the row whose instant the global-shutter picture shows, where file names do not "
+      "say.");
+  add(ChoiceOption<Options>("split", &Options::split,
+                            {{"all", DatasetSplit::kAll},
+                             {"train", DatasetSplit::kTrain},
+                             {"test", DatasetSplit::kTest}}),
+      "rs-real: which samples; the table tells the splits apart.");
   add(TextOption<Options>("clips", "FOLDER", &Options::clips),
       "clips: video files, and folders that `rs-stabilize simulate` wrote. Implies the protocol.");
   add(SwitchOption<Options>("twins", &Options::twins),
@@ -56,25 +111,32 @@ OptionTable<Options> BuildTable() {
   add(TextOption<Options>("structured-source", "TEXT", &Options::structured_source),
       "Only the lines of that list that contain TEXT count.");
   add(IntegerOption<Options>("limit", "N", &Options::limit, 0, 1'000'000'000),
-      "Use the first N photographs, pairs or clips; 0 means all.");
+      "Use the first N photographs, pictures (to the end of their clip) or clips; 0 means all.");
   add(IntegerOption<Options>("linearity-photos", "N", &Options::linearity_photos, 0, 1'000'000'000),
       "synthetic-val: skew the first N photographs by known factors, to see whether the answer "
       "grows with the motion; 0 leaves this out.");
 
   group = "Methods";
   add(TextOption<Options>("methods", "LIST", &Options::methods),
-      "Which to compare, separated by commas: none (the picture as it is; always there), "
-      "regression (where --regression-model names one), sample, mean. Of clips: input, any word of "
+      "Which to compare, separated by commas: none (the picture as it is; always there); sample "
+      "and "
+      "mean of the model's samples, diffusion (another word for mean; settings may follow, as in "
+      "diffusion@steps=1,samples=8), reference and regression where their models are named; gyro "
+      "and "
+      "gyro-onestep[@bands=60] where pictures have gyro logs. Data sets are given to all of them "
+      "unless told otherwise. Of clips: input, any word of "
       "the main command's --rs, vidstab and deshake (FFmpeg's, where an ffmpeg is installed), all "
       "of them unless given; main options may follow, as in off+smoothness=2.");
   add(TextOption<Options>("model", "FILE", &Options::model),
       "Model file, its folder, or the name of an installed model; the default model unless given.");
   add(TextOption<Options>("regression-model", "FILE", &Options::regression_model),
       "A second model, asked for one sample: direct regression.");
+  add(TextOption<Options>("reference-model", "FILE", &Options::reference_model),
+      "Weights of the published network, for the method reference.");
   add(ChoiceOption<Options>("device", &Options::device, DeviceChoices()),
       "Where the networks run.");
   add(IntegerOption<Options>("samples", "N", &Options::samples, 1, 1024),
-      "How many samples the method mean draws.");
+      "How many samples the methods mean, diffusion and reference draw.");
   add(IntegerOption<Options>("calibration-samples", "N", &Options::calibration_samples, 0, 1024),
       "synthetic-val: how many samples the spread is judged by, at least 9; 0 leaves this out.");
   add(IntegerOption<Options>("steps", "N", &Options::steps, 0, 1000),
@@ -90,7 +152,9 @@ OptionTable<Options> BuildTable() {
   add(TextOption<Options>("csv", "FILE", &Options::csv),
       "Write one line for each picture and method.");
   add(TextOption<Options>("json", "FILE", &Options::json), "Write the table's figures as JSON.");
-
+  add(TextOption<Options>("state", "FILE", &Options::state),
+      "rs-real, pairs: keep what is done in FILE, and go on from it when the same is asked again "
+      "after a stop. Without it, beside the CSV or JSON until that is written.");
   add(RealOption<Options>("crf", "N", &Options::crf, {0.0, 51.0}),
       "clips: quality of the H.264 that every method writes.");
   add(TextOption<Options>("preset", "NAME", &Options::preset), "clips: x264's preset for it.");

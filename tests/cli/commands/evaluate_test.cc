@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "cli/commands/evaluate_methods.h"
-#include "cli/commands/evaluate_pairs.h"
+#include "cli/commands/evaluate_pictures.h"
 #include "cli/commands/evaluate_synthetic.h"
 #include "igf/base/whole_file.h"
 #include "tests/evaluation/test_methods.h"
@@ -139,19 +139,22 @@ TEST(Evaluate, PairsAreReported) {
   WritePhoto(folder / "Fastec/seq_01/rs_1.png", photo);
   WritePhoto(folder / "Fastec/seq_01/gs_1.png", photo);
   EvaluateOptions options = TinyModel(folder);
+  options.methods = "none,gyro,diffusion@samples=2,steps=1";
   options.protocol = EvaluationProtocol::kPairs;
   options.pairs = folder.path().string();
   const auto factory = MakeMethodFactory(options);
   ASSERT_TRUE(factory) << factory.error().message;
-  const auto report = EvaluatePairs(options, *factory, SilentLogger());
+  const auto report = EvaluatePictures(options, *factory, SilentLogger());
   ASSERT_TRUE(report) << report.error().message;
   const Json json = Json::parse(FormatJson(*report));
   EXPECT_EQ(json["samples"], 1);
   EXPECT_EQ(json["methods"]["none"]["psnr"], 60.0);  // the same picture: the limit
-  EXPECT_EQ(json["pairs"][0]["name"], "Fastec/seq_01");
-  EXPECT_TRUE(json["pairs"][0]["methods"]["mean"]["psnr_untouched"].is_number());
-  EXPECT_THAT(FormatText(*report), HasSubstr("Fastec/seq_01"));
-  EXPECT_THAT(FormatCsv(*report), HasSubstr("Fastec/seq_01,96,64,sample,"));
+  EXPECT_TRUE(json["methods"]["none"]["epe"].is_null());
+  EXPECT_EQ(json["methods"]["gyro"]["pictures"], 0);  // there is no log
+  EXPECT_TRUE(json["methods"]["diffusion@samples=2,steps=1"]["psnr_untouched"].is_number());
+  EXPECT_THAT(FormatText(*report), HasSubstr("all, 1 pictures"));
+  EXPECT_THAT(FormatText(*report), Not(HasSubstr("nan")));
+  EXPECT_THAT(FormatCsv(*report), HasSubstr("Fastec/seq_01,Fastec/seq_01,,,Fastec/seq_01,96,64,"));
 }
 
 TEST(Evaluate, WhatIsLeftOutIsTold) {
@@ -179,6 +182,20 @@ TEST(Evaluate, MistakesAreNamed) {
       {"--photos", [](EvaluateOptions& o) { o.photos.clear(); }},
       {"/nonexistent", [](EvaluateOptions& o) { o.photos = "/nonexistent"; }},
       {"--pairs", [](EvaluateOptions& o) { o.protocol = EvaluationProtocol::kPairs; }},
+      {"rs-real:FOLDER", [](EvaluateOptions& o) { o.protocol = EvaluationProtocol::kRsReal; }},
+      {"rs_1.png",
+       [](EvaluateOptions& o) {
+         o.protocol = EvaluationProtocol::kPairs;
+         o.pairs = o.photos;
+       }},
+      {"no .npz",
+       [](EvaluateOptions& o) {
+         o.protocol = EvaluationProtocol::kRsReal;
+         o.rs_real = o.photos;
+       }},
+      {"no setting 'speed'", [](EvaluateOptions& o) { o.methods = "diffusion@speed=2"; }},
+      {"without a method", [](EvaluateOptions& o) { o.methods = "none,steps=2"; }},
+      {"bands", [](EvaluateOptions& o) { o.methods = "gyro-onestep@bands=0"; }},
       {"'magic'", [](EvaluateOptions& o) { o.methods = "none,magic"; }},
       {"--calibration-samples", [](EvaluateOptions& o) { o.calibration_samples = 4; }},
       {"/nonexistent", [](EvaluateOptions& o) { o.model = "/nonexistent/model.json"; }},
