@@ -10,7 +10,7 @@ rsstab_build_packages=(
   libavformat-dev libavcodec-dev libavutil-dev libswscale-dev
   libgtest-dev libgmock-dev)
 rsstab_check_packages=(
-  clang-format libtorch-dev libopenblas0-pthread
+  clang-format ffmpeg libtorch-dev libopenblas0-pthread
   python3-torch python3-opencv python3-numpy python3-matplotlib)
 
 # install_missing PACKAGE...: asks apt for those that are not there, as root or through sudo, never

@@ -2,7 +2,6 @@
 #include "cli/commands/clip_method.h"
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <set>
 #include <sstream>
@@ -11,6 +10,7 @@
 
 #include "cli/child_process.h"
 #include "cli/passes.h"
+#include "cli/stopwatch.h"
 
 namespace rsstab::cli {
 namespace {
@@ -113,16 +113,6 @@ void TellWhatIsKnown(const EvaluationClip& clip, const igf::SimulationTruth& tru
   }
 }
 
-class Stopwatch {
- public:
-  [[nodiscard]] double Seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
 Result<SteadyResult> RunOwn(const StabilizeOptions& options, const std::string& input,
                             const ClipEncoding& encoding, const fs::path& folder,
                             const Logger& logger) {
@@ -144,17 +134,11 @@ Result<SteadyResult> RunOwn(const StabilizeOptions& options, const std::string& 
   result.analysis_s = first_pass.Seconds();
 
   const Stopwatch second_pass;
-  EncodeOptions encode;
-  encode.output = result.clip;
-  encode.overwrite = true;
-  encode.codec = "libx264";
-  encode.crf = encoding.crf;
-  encode.preset = encoding.preset;
   auto second_look = OpenClip(input, options, SilentLogger());
   if (!second_look) {
     return Propagate(second_look.error());
   }
-  auto output = OpenOutput(encode, options, **second_look, SilentLogger());
+  auto output = OpenOutput(EncodeAs(encoding, result.clip), options, **second_look, SilentLogger());
   if (!output) {
     return Propagate(output.error());
   }
@@ -211,6 +195,16 @@ Result<SteadyResult> RunFfmpeg(ClipTool tool, const std::string& input,
 }
 
 }  // namespace
+
+EncodeOptions EncodeAs(const ClipEncoding& encoding, const std::string& output) {
+  EncodeOptions encode;
+  encode.output = output;
+  encode.overwrite = true;
+  encode.codec = "libx264";
+  encode.crf = encoding.crf;
+  encode.preset = encoding.preset;
+  return encode;
+}
 
 std::vector<std::string> ClipMethodNames() {
   std::vector<std::string> names = {kInput};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/commands/clip_set.h"
+#include "cli/encode_options.h"
 #include "igf/base/log.h"
 #include "igf/base/result.h"
 #include "igf/simulation_truth.h"
@@ -45,6 +46,9 @@ struct ClipEncoding {
   double crf = 0.0;  // of x264
   std::string preset;
 };
+
+// The same for this program: replaces `output`.
+[[nodiscard]] EncodeOptions EncodeAs(const ClipEncoding& encoding, const std::string& output);
 
 // What a method made of a clip.
 struct SteadyResult {

@@ -6,6 +6,7 @@
 
 #include "cli/cancellation.h"
 #include "cli/commands/clip_method.h"
+#include "cli/commands/codec_cost.h"
 #include "cli/media/video_reader.h"
 #include "cli/output_names.h"
 #include "igf/simulation_truth.h"
@@ -42,6 +43,15 @@ Status TryClip(const EvaluationClip& clip, const Logger& logger) {
   return reader ? Status{} : Propagate(reader.error());
 }
 
+void NoteCodec(const CodecCost& cost, ClipRun& run, ClipRecord& clip) {
+  const double frames = static_cast<double>(std::max<std::int64_t>(1, run.clip.metrics.frames));
+  clip.decode_ms = kMilli * cost.decode_s / frames;
+  clip.recode_ms = kMilli * cost.recode_s / frames;
+  if (run.total_ms) {
+    run.own_ms = *run.total_ms - *clip.recode_ms - (run.analysis_ms ? *clip.decode_ms : 0.0);
+  }
+}
+
 class Evaluation {
  public:
   Evaluation(const EvaluateOptions& options, std::vector<ClipMethod> methods, std::size_t clips,
@@ -76,13 +86,22 @@ class Evaluation {
       LeaveOut(clip.name, usable.error());
       return AdvanceTo(runs_then);
     }
-    ClipRecord record{clip.name, clip.kind, {}, {}};
+    ClipRecord record;
+    record.name = clip.name;
+    record.kind = clip.kind;
     if (*truth) {
       record.readout_s = (*truth)->camera.readout_s;
+    }
+    std::optional<CodecCost> codec;
+    if (Status status = TimeCodec(clip, folder, codec); !status) {
+      return status;
     }
     for (const ClipMethod& method : methods_) {
       auto run = Run(method, clip, *truth ? &**truth : nullptr, folder);
       if (run) {
+        if (codec) {
+          NoteCodec(*codec, *run, record);
+        }
         record.runs.push_back(std::move(*run));
       } else if (run.error().code == ErrorCode::kCancelled) {
         return Propagate(run.error());
@@ -110,6 +129,25 @@ class Evaluation {
     const auto all = static_cast<std::int64_t>(clips_ * methods_.size());
     if (progress_ && !progress_(static_cast<std::int64_t>(runs_done_), all)) {
       return Fail(ErrorCode::kCancelled, "Stopped after {} of {} runs, as asked.", runs_done_, all);
+    }
+    return {};
+  }
+
+  // What every method pays for; left out where nothing is timed.
+  Status TimeCodec(const EvaluationClip& clip, const std::string& folder,
+                   std::optional<CodecCost>& cost) {
+    if (std::all_of(methods_.begin(), methods_.end(),
+                    [](const ClipMethod& method) { return method.tool == ClipTool::kNone; })) {
+      return {};
+    }
+    auto measured =
+        MeasureCodecCost(clip.video.string(), EncodeAs(encoding_, folder + "recoded.mkv"));
+    if (measured) {
+      cost = *measured;
+    } else if (measured.error().code == ErrorCode::kCancelled) {
+      return Propagate(measured.error());
+    } else {
+      LeaveOut(clip.name + ", time without any method", measured.error());
     }
     return {};
   }

@@ -32,13 +32,17 @@ struct ClipRun {
   std::optional<double> analysis_ms;  // also empty for a tool of one pass
   std::optional<double> render_ms;
   std::optional<double> total_ms;
+  std::optional<double> own_ms;  // less decoding (each pass) and encoding
 };
 
 struct ClipRecord {
   std::string name;
   ClipKind kind = ClipKind::kReal;
   std::optional<double> readout_s;  // the true one
-  std::vector<ClipRun> runs;        // in the order of the methods; failed ones are missing
+  // Wall time a frame of decoding alone, and of decoding and encoding.
+  std::optional<double> decode_ms;
+  std::optional<double> recode_ms;
+  std::vector<ClipRun> runs;  // in the order of the methods; failed ones are missing
 };
 
 struct ClipsReport {

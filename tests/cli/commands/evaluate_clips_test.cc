@@ -100,6 +100,8 @@ TEST_F(EvaluateClipsTest, TruthTellsTheMethodsApart) {
   EXPECT_GT(off.pair->crop.value(), 0.75);
   EXPECT_GT(off.analysis_ms.value(), 0.0);
   EXPECT_DOUBLE_EQ(off.total_ms.value(), *off.analysis_ms + off.render_ms.value());
+  EXPECT_DOUBLE_EQ(off.own_ms.value(),
+                   *off.total_ms - clip.decode_ms.value() - clip.recode_ms.value());
 
   const ClipRecord& twin = report->clips[1];
   EXPECT_EQ(twin.name, "vibration/gs");
@@ -152,7 +154,8 @@ TEST_F(EvaluateClipsTest, ReportsHoldEveryFigure) {
                              "rs_epe_uncorrected_px",
                              "analysis_ms",
                              "render_ms",
-                             "total_ms"}) {
+                             "total_ms",
+                             "own_ms"}) {
     EXPECT_TRUE(off[figure].is_number()) << figure;
   }
   EXPECT_TRUE(off["readout_ms"].is_null());  // no source, so none was found
@@ -187,7 +190,8 @@ TEST_F(EvaluateClipsTest, MeansAreOverTheClipsOfAKind) {
   ClipsReport report;
   report.methods = {"off"};
   for (const double jitter : {1.0, 2.0, 6.0}) {
-    ClipRecord clip{"clip", ClipKind::kReal, {}, {}};
+    ClipRecord clip;
+    clip.name = "clip";
     clip.runs.emplace_back();
     clip.runs.back().method = "off";
     clip.runs.back().clip.metrics.jitter = jitter;
