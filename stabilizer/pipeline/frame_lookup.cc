@@ -23,7 +23,7 @@ constexpr double kLastFrameShare = 1.5;
 constexpr double kMinGain = 0.8;
 constexpr double kMaxGain = 1.25;
 // Fingerprints are whole levels: below this two pictures cannot be told apart.
-constexpr double kAlike = 0.25;
+constexpr double kAlike = 0.05;
 constexpr double kDefaultFrameRate = 30.0;
 
 double TickLength(const std::vector<RecordKey>& keys, const stabilizer::ClipAnalysis& clip,

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stabilizer/pipeline/timed_renderer.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "stabilizer/luma_proxy.h"
@@ -21,6 +23,9 @@ constexpr double kMaxDistance = 4.0;
 constexpr double kMaxDistanceRgb = 10.0;
 // What is looked for in the whole clip must fit better than what is expected.
 constexpr double kSearchShare = 0.5;
+// The same frame differs by 0.3 to 0.5 levels, its neighbour in a shaky clip by 2. Once a file is
+// trusted, nothing else is looked for below this.
+constexpr double kSurelyAlike = 0.7;
 constexpr double kMaxShapeDifference = 0.01;
 
 }  // namespace
@@ -59,13 +64,19 @@ struct TimedRenderer::Impl {
     }
     const auto fingerprint = stabilizer::FingerprintOf(*proxy);
     const double limit = picture.layout.is_rgb ? kMaxDistanceRgb : kMaxDistance;
-    if (at_time &&
-        PictureDistance(fingerprint, lookup.keys()[at_time->record].fingerprint) <= limit) {
+    const double expected =
+        at_time ? PictureDistance(fingerprint, lookup.keys()[at_time->record].fingerprint)
+                : std::numeric_limits<double>::infinity();
+    // A clip that was cut at its start has records at these times, too: those of other frames.
+    const auto alike = fitting >= kFramesUntilTrusted && expected <= kSurelyAlike
+                           ? std::nullopt
+                           : lookup.ByPicture(fingerprint, kSearchShare * std::min(limit, expected),
+                                              time_s + shift_s);
+    if (!alike && expected <= limit) {
       ++fitting;
       return at_time->record;
     }
     fitting = 0;
-    const auto alike = lookup.ByPicture(fingerprint, kSearchShare * limit, time_s + shift_s);
     if (!alike) {
       if (!at_time) {
         return Fail(ErrorCode::kNotFound,
