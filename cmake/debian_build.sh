@@ -7,10 +7,10 @@ rsstab_build_packages=(
   libeigen3-dev libexpected-dev libspdlog-dev libfmt-dev
   libceres-dev libopencv-dev nlohmann-json3-dev zlib1g-dev libssl-dev libcli11-dev
   libexiv2-dev libzip-dev
-  libavformat-dev libavcodec-dev libavutil-dev libswscale-dev
+  libavformat-dev libavcodec-dev libavutil-dev libswscale-dev frei0r-plugins-dev
   libgtest-dev libgmock-dev)
 rsstab_check_packages=(
-  clang-format ffmpeg libtorch-dev libopenblas0-pthread
+  clang-format ffmpeg melt libtorch-dev libopenblas0-pthread
   python3-torch python3-opencv python3-numpy python3-matplotlib)
 
 # install_missing PACKAGE...: asks apt for those that are not there, as root or through sudo, never
