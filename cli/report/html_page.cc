@@ -46,6 +46,13 @@ void HtmlPage::BeginSection(std::string_view heading, std::string_view explanati
   }
 }
 
+void HtmlPage::AddHeading(std::string_view heading, std::string_view explanation) {
+  body_ += fmt::format("<h3>{}</h3>\n", Escape(heading));
+  if (!explanation.empty()) {
+    AddText(explanation);
+  }
+}
+
 void HtmlPage::AddText(std::string_view paragraph) {
   body_ += "<p>" + Escape(paragraph) + "</p>\n";
 }
@@ -125,8 +132,12 @@ void HtmlPage::Add(std::span<const BeforeAfter> pictures) {
   body_ += "</div>\n";
 }
 
-void HtmlPage::Add(std::span<const Panel> panels) {
-  body_ += "<div class=\"panels\">\n";
+void HtmlPage::Add(std::span<const Panel> panels) { AddPanels(panels, "panels"); }
+
+void HtmlPage::AddPairs(std::span<const Panel> panels) { AddPanels(panels, "panels pairs"); }
+
+void HtmlPage::AddPanels(std::span<const Panel> panels, std::string_view css_class) {
+  body_ += fmt::format("<div class=\"{}\">\n", css_class);
   for (const Panel& panel : panels) {
     body_ += "<figure>" +
              Image(panel.uri, panel.title,

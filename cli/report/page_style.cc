@@ -15,15 +15,17 @@ h1{margin:2px 0 0;font-size:26px;line-height:1.2;font-weight:650;overflow-wrap:a
 .sub{margin:6px 0 0;color:var(--faint)}
 section{margin-top:40px}
 h2{margin:0;font-size:18px;font-weight:650;padding-bottom:6px;border-bottom:1px solid var(--grid)}
+h3{margin:26px 0 0;font-size:15px;font-weight:600}
 section>p{margin:10px 0 0;max-width:70ch;color:var(--faint)}
-.big{display:grid;grid-template-columns:repeat(auto-fit,minmax(150px,1fr));gap:20px 24px;
+.big{display:grid;grid-template-columns:repeat(auto-fill,minmax(176px,1fr));gap:20px 14px;
 margin:22px 0 0}
-.big div{border-left:3px solid var(--line-2);padding-left:12px}
+.big div{border-left:3px solid var(--line-2);padding-left:10px}
 .big dt{color:var(--faint);font-size:13px}
-.big dd{margin:0;font-size:22px;font-weight:650;line-height:1.3;font-variant-numeric:tabular-nums;
+.big dd{margin:0;font-size:20px;font-weight:650;line-height:1.3;font-variant-numeric:tabular-nums;
 white-space:nowrap}
 .big dd small{font-size:14px;font-weight:400;color:var(--faint)}
 .big .was{font-weight:400;color:var(--line-1)}
+@media(max-width:420px){.big{grid-template-columns:repeat(2,minmax(0,1fr))}.big dd{font-size:17px}}
 .wide{overflow-x:auto;margin-top:14px}
 table{border-collapse:collapse;font-variant-numeric:tabular-nums;min-width:min(100%,420px)}
 caption{text-align:left;font-weight:600;padding-bottom:6px}
@@ -36,7 +38,7 @@ tbody th{font-weight:400}
 td.best{font-weight:650}td.dim,td .dim{color:var(--faint)}td.path{overflow-wrap:anywhere}
 .facts{display:grid;grid-template-columns:minmax(110px,auto) 1fr;gap:5px 20px;margin:14px 0 0}
 .facts dt{color:var(--faint)}.facts dd{margin:0;overflow-wrap:anywhere}
-.charts{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,330px),1fr));
+.charts{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,330px),1fr));
 gap:26px 34px;margin-top:18px}
 .charts .chart{width:100%}
 .slides{display:grid;grid-template-columns:repeat(2,minmax(0,1fr));gap:22px;margin-top:16px}
@@ -62,6 +64,7 @@ pointer-events:none}
 .stage input:focus-visible~i:after{outline:3px solid var(--line-2)}
 .panels{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,220px),1fr));
 gap:18px 20px;margin-top:16px;align-items:end}
+.pairs{grid-template-columns:repeat(2,minmax(0,1fr))}
 .panels img{display:block;width:100%;height:auto;border-radius:3px}
 .keys{display:flex;flex-wrap:wrap;gap:14px 40px;align-items:center;margin-top:14px;font-size:13px;
 color:var(--faint)}
