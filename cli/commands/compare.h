@@ -79,6 +79,7 @@ struct CompareFigure {
   std::optional<double> output;
   int digits = 3;  // after the point
   Better better = Better::kLower;
+  std::string meaning;  // in a few words; docs/metrics.md has the definition
 };
 [[nodiscard]] std::vector<CompareFigure> CompareFigures(const CompareReport& report);
 

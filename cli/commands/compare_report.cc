@@ -62,28 +62,38 @@ std::vector<CompareFigure> CompareFigures(const CompareReport& report) {
   const stabilizer::ClipMetrics& out = report.output.metrics;
   const stabilizer::PairMetrics& pair = report.pair;
   std::vector<CompareFigure> figures = {
-      {"wobble", "px", in.wobble, out.wobble, 3},
-      {"row wobble", "px", in.row_wobble, out.row_wobble, 3},
-      {"jitter", "px", in.jitter, out.jitter, 2},
-      {"shake", "px", in.shake, out.shake, 2},
-      {"stability, translation", "", in.stability_move, out.stability_move, 3, Better::kHigher},
-      {"stability, rotation", "", in.stability_turn, out.stability_turn, 3, Better::kHigher},
-      {"ITF", "dB", in.itf_db, out.itf_db, 2, Better::kHigher}};
+      {"wobble", "px", in.wobble, out.wobble, 3, Better::kLower,
+       "what moves against the rest of the picture"},
+      {"row wobble", "px", in.row_wobble, out.row_wobble, 3, Better::kLower,
+       "its part common to rows: rolling shutter"},
+      {"jitter", "px", in.jitter, out.jitter, 2, Better::kLower,
+       "change of the motion from frame to frame"},
+      {"shake", "px", in.shake, out.shake, 2, Better::kLower, "path less its mean over 0.25 s"},
+      {"stability, translation", "", in.stability_move, out.stability_move, 3, Better::kHigher,
+       "share of slow movement in the path, 1 = steady"},
+      {"stability, rotation", "", in.stability_turn, out.stability_turn, 3, Better::kHigher,
+       "the same of its rotation"},
+      {"ITF", "dB", in.itf_db, out.itf_db, 2, Better::kHigher, "PSNR between consecutive frames"}};
   if (report.input.truth && report.output.truth) {
     const stabilizer::TruthMetrics& in_truth = *report.input.truth;
     const stabilizer::TruthMetrics& out_truth = *report.output.truth;
-    figures.push_back(
-        {"camera residual", "px", in_truth.camera_residual, out_truth.camera_residual, 3});
-    figures.push_back({"  its worst frame", "px", in_truth.worst_frame, out_truth.worst_frame, 3});
-    figures.push_back({"bend", "px", in_truth.bend, out_truth.bend, 3});
+    figures.insert(figures.end(),
+                   {{"camera residual", "px", in_truth.camera_residual, out_truth.camera_residual,
+                     3, Better::kLower, "distance from what a global shutter would have seen"},
+                    {"  its worst frame", "px", in_truth.worst_frame, out_truth.worst_frame, 3,
+                     Better::kLower, ""},
+                    {"bend", "px", in_truth.bend, out_truth.bend, 3, Better::kLower,
+                     "the same after the best homography"}});
   }
   figures.insert(
       figures.end(),
-      {{"crop ratio", "", 1.0, pair.crop, 3, Better::kNeither},
-       {"  its smallest", "", 1.0, pair.smallest_crop, 3, Better::kNeither},
-       {"distortion value", "", 1.0, pair.distortion, 3, Better::kNeither},
-       {"undefined pixels", "%", 0.0, Percent(pair.undefined), 3, Better::kNeither},
-       {"  in the worst frame", "%", 0.0, Percent(pair.worst_undefined), 3, Better::kNeither}});
+      {{"crop ratio", "", 1.0, pair.crop, 3, Better::kNeither, "share of a side that was kept"},
+       {"  its smallest", "", 1.0, pair.smallest_crop, 3, Better::kNeither, ""},
+       {"distortion value", "", 1.0, pair.distortion, 3, Better::kNeither,
+        "1 = no frame stretched or sheared"},
+       {"undefined pixels", "%", 0.0, Percent(pair.undefined), 3, Better::kNeither,
+        "without a source in the input"},
+       {"  in the worst frame", "%", 0.0, Percent(pair.worst_undefined), 3, Better::kNeither, ""}});
   return figures;
 }
 

@@ -258,7 +258,7 @@ Result<std::string> MakeClipPage(const ClipPage& page) {
   if (!page.command.empty()) {
     html.AddCode("Options as given", page.command);
   }
-  AddStages(page.stages, figures.input.metrics.frames, html);
+  AddStages(page.stages, figures.input.metrics.frames, "frame", html);
   return html.Finish(PageFooter());
 }
 

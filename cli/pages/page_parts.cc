@@ -55,8 +55,12 @@ int QuarterTurns(const media::VideoInfo& info) {
 
 report::Table FiguresTable(const CompareReport& report) {
   report::Table table;
-  table.headings = {"", "before", "after", ""};
+  table.headings = {"", "before", "after", "", ""};
+  table.has_notes = true;
   for (const CompareFigure& figure : CompareFigures(report)) {
+    if (!figure.output && figure.better == Better::kNeither) {
+      continue;  // not asked for
+    }
     const auto cell = [&](const std::optional<double>& value, const std::optional<double>& other) {
       report::TableCell result{value ? fmt::format("{:.{}f}", *value, figure.digits) : "\u2013"};
       if (value && other && figure.better != Better::kNeither) {
@@ -64,10 +68,12 @@ report::Table FiguresTable(const CompareReport& report) {
       }
       return result;
     };
-    table.rows.push_back({{figure.name},
+    const bool is_part = figure.name.starts_with("  ");
+    table.rows.push_back({{is_part ? "\u2003" + figure.name.substr(2) : figure.name},
                           cell(figure.input, figure.output),
                           cell(figure.output, figure.input),
-                          {figure.unit}});
+                          {figure.unit},
+                          {figure.meaning}});
   }
   return table;
 }
@@ -86,17 +92,18 @@ Result<report::ColorKey> DifferenceColorKey() {
       fmt::format("{} of 255 grey levels apart, or more", report::kFullDifference)};
 }
 
-void AddStages(const std::vector<StageTime>& stages, std::int64_t items, report::HtmlPage& html) {
+void AddStages(const std::vector<StageTime>& stages, std::int64_t items, const std::string& unit,
+               report::HtmlPage& html) {
   constexpr double kMilliseconds = 1000.0;
   if (stages.empty()) {
     return;
   }
   std::vector<report::Share> shares;
   double total = 0.0;
-  const auto text = [items](double seconds) {
+  const auto text = [items, &unit](double seconds) {
     return fmt::format("{:.2f} s", seconds) +
-           (items > 0 ? fmt::format(", {:.1f} ms each",
-                                    kMilliseconds * seconds / static_cast<double>(items))
+           (items > 0 ? fmt::format(", {:.1f} ms a {}",
+                                    kMilliseconds * seconds / static_cast<double>(items), unit)
                       : "");
   };
   for (const StageTime& stage : stages) {

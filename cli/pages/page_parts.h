@@ -33,8 +33,9 @@ namespace rsstab::cli {
 // The key of difference maps.
 [[nodiscard]] Result<report::ColorKey> DifferenceColorKey();
 
-// Bars, and what each comes to for one of `items` frames or pictures (0: not told).
-void AddStages(const std::vector<StageTime>& stages, std::int64_t items, report::HtmlPage& html);
+// Bars, and what each comes to for one of `items` frames or pictures (`unit`; 0 items: not told).
+void AddStages(const std::vector<StageTime>& stages, std::int64_t items, const std::string& unit,
+               report::HtmlPage& html);
 
 // "rs-stabilize 0.1.0"
 [[nodiscard]] std::string ProgramName();

@@ -31,6 +31,7 @@ struct Table {
   std::string caption;                // may be empty
   std::vector<std::string> headings;  // one for each column; the first column names the row
   std::vector<std::vector<TableCell>> rows;
+  bool has_notes = false;  // the last column is a remark, left out on a narrow screen
 };
 
 struct Fact {

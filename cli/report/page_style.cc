@@ -34,8 +34,10 @@ vertical-align:baseline}
 thead th{color:var(--faint);font-weight:500;font-size:13px;white-space:nowrap;
 border-bottom-color:var(--faint)}
 tbody th{font-weight:400}
+.note{color:var(--faint);padding-left:8px}
+@media(max-width:640px){.note{display:none}}
 .n{text-align:right;white-space:nowrap;padding-left:8px}
-td.best{font-weight:650}td.dim,td .dim{color:var(--faint)}td.path{overflow-wrap:anywhere}
+td.best{font-weight:650}
 .facts{display:grid;grid-template-columns:minmax(110px,auto) 1fr;gap:5px 20px;margin:14px 0 0}
 .facts dt{color:var(--faint)}.facts dd{margin:0;overflow-wrap:anywhere}
 .charts{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,330px),1fr));
@@ -63,7 +65,7 @@ color:#fff;font-size:12px;pointer-events:none}
 pointer-events:none}
 .stage input:focus-visible~i:after{outline:3px solid var(--line-2)}
 .panels{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,220px),1fr));
-gap:18px 20px;margin-top:16px;align-items:end}
+gap:18px 20px;margin-top:22px}
 .pairs{grid-template-columns:repeat(2,minmax(0,1fr))}
 .panels img{display:block;width:100%;height:auto;border-radius:3px}
 .keys{display:flex;flex-wrap:wrap;gap:14px 40px;align-items:center;margin-top:14px;font-size:13px;
@@ -73,6 +75,9 @@ color:var(--faint)}
 .keys .ramp{width:min(220px,40vw);height:12px;border-radius:2px}
 .bars{display:grid;grid-template-columns:minmax(90px,auto) 1fr auto;gap:5px 14px;margin:14px 0 0;
 align-items:center;font-variant-numeric:tabular-nums}
+.bars>div{display:contents}
+@media(max-width:640px){.bars{display:block}.bars>div{display:grid;gap:2px 14px;
+grid-template:"name time" "bar bar"/1fr auto;margin-bottom:8px}.bars b{grid-area:bar}}
 .bars b{display:block;height:11px;background:var(--line-2);opacity:.75;border-radius:2px;
 min-width:1px}
 .bars em{font-style:normal;text-align:right;white-space:nowrap;color:var(--faint)}
