@@ -31,7 +31,8 @@ constexpr double kMaxCellWeight = 4.0;
 constexpr double kParallaxSigma = 0.3 / kWidth;
 // Cauchy scale of a cell, standard deviations.
 constexpr double kCellLossScale = 3.0;
-constexpr double kFocalPriorSigma = 0.15;  // of its logarithm
+// Of its logarithm; wide, since a clip's windows must not count the same prior again and again.
+constexpr double kFocalPriorSigma = 0.5;
 constexpr int kMarginKnots = 3;
 
 // From px per frame^2.5 to rad between knots: a cubic's third derivative is its third difference

@@ -23,7 +23,7 @@ struct RsMotionModel {
   double jerk_weight = 0.1;
   // Error of one track beyond what the model knows (its own noise, depth of the scene), px at 640
   // px width.
-  double track_sigma_px = 0.15;
+  double track_sigma_px = 0.3;
 };
 
 inline constexpr int kKnotsPerFrame = 6;  // 60 Hz at 30 frames/s has three knots a period
