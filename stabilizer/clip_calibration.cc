@@ -43,6 +43,8 @@ constexpr double kSigmasToBelieve = 3.0;
 // Evidence must be this much better than that of a global shutter.
 constexpr double kMinEvidence = 10.0;
 constexpr double kMaxFocalSigma = 0.03;  // of its logarithm
+constexpr double kSystematicFocalSigma = 0.015;
+constexpr double kMaxFocalParallax_px = 0.1;
 // "No rolling shutter" is said when it is known this well, frame intervals.
 constexpr double kMaxGlobalSigma = 0.05;
 constexpr double kReadoutPriorSigma = 1.0;  // frame intervals
@@ -55,6 +57,12 @@ double Excitement(const std::vector<FramePairCells>& pairs) {
     sum += (pairs[i].affine.col(0) - pairs[i - 1].affine.col(0)).squaredNorm();
   }
   return kWidth * kWidth * sum / static_cast<double>(pairs.size());
+}
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 RsMotionModel ModelFor(const ClipCalibrationOptions& options, double readout_s,
@@ -190,9 +198,16 @@ ClipCalibration ClipCalibrator::Calibrate() {
 
   // From there every stretch finds its own readout and focal length.
   const Consensus consensus = Refine(readouts_s[best], result.jerk_weight);
-  if (!options_.focal && consensus.sigma.y() < kMaxFocalSigma) {
+  result.parallax_px = consensus.parallax_px;
+  if (!options_.focal) {
     const double focal = std::exp(consensus.value.y());
-    result.focal = {focal, focal * consensus.sigma.y(), true};
+    const double sigma = std::hypot(consensus.sigma.y(), kSystematicFocalSigma);
+    // Nearby things that move past pretend a longer lens.
+    if (sigma < kMaxFocalSigma && consensus.parallax_px < kMaxFocalParallax_px) {
+      result.focal = {focal, focal * sigma, true};
+    } else {
+      result.focal.sigma = result.focal.value * kFocalPriorSigma;
+    }
   }
   if (options_.readout_s) {
     return result;
@@ -252,6 +267,7 @@ double ClipCalibrator::EvidenceTable::JerkWeight(std::size_t readout) const {
 
 ClipCalibrator::Consensus ClipCalibrator::Refine(double readout_s, double jerk_weight) const {
   std::vector<Opinion> opinions(kept_.size());
+  std::vector<double> parallax_px(kept_.size(), 0.0);
   WorkerPool pool(options_.num_threads);
   pool.ForBlocks(static_cast<int>(opinions.size()), 1, [&](int begin, int /*end*/) {
     const auto i = static_cast<std::size_t>(begin);
@@ -261,11 +277,14 @@ ClipCalibrator::Consensus ClipCalibrator::Refine(double readout_s, double jerk_w
     }
     const Eigen::Vector2d unit(options_.frame_interval_s, 1.0);
     opinions[i].value = {window.readout_s() / options_.frame_interval_s, std::log(window.focal())};
+    parallax_px[i] = window.Parallax();
     opinions[i].information = unit.asDiagonal() * window.ClipInformation() * unit.asDiagonal();
   });
-  return Join(opinions, {kReadoutPriorSigma, kFocalPriorSigma},
-              {readout_s / options_.frame_interval_s,
-               std::log(options_.focal.value_or(kDefaultFocal))});
+  Consensus consensus = Join(opinions, {kReadoutPriorSigma, kFocalPriorSigma},
+                             {readout_s / options_.frame_interval_s,
+                              std::log(options_.focal.value_or(kDefaultFocal))});
+  consensus.parallax_px = Median(parallax_px);
+  return consensus;
 }
 
 }  // namespace rsstab::stabilizer

@@ -133,7 +133,6 @@ struct RsMotionWindow::Impl {
   std::vector<ceres::ResidualBlockId> track_blocks;
   std::vector<ceres::ResidualBlockId> data_blocks;  // tracks and priors, without the jerk
   std::vector<ceres::ResidualBlockId> jerk_blocks;
-  std::vector<double> track_sigmas;
   std::vector<double*> motion_blocks;  // free knots and parallax
 
   void AddTracks(std::span<const FramePairCells> pairs) {
@@ -158,7 +157,6 @@ struct RsMotionWindow::Impl {
                                   static_cast<std::size_t>(first),
                                   static_cast<std::size_t>(last - first + 1)),
             &loss, parameters));
-        track_sigmas.push_back(sigma);
       }
     }
     data_blocks = track_blocks;
@@ -295,22 +293,12 @@ std::vector<double> RsMotionWindow::LogEvidence(std::span<const double> jerk_wei
   return evidence;
 }
 
-double RsMotionWindow::TrackResidual() {
-  Impl& s = *impl_;
-  ceres::Problem::EvaluateOptions options;
-  options.residual_blocks = s.track_blocks;
-  std::vector<double> residuals;
-  if (s.track_blocks.empty() ||
-      !s.problem.Evaluate(options, nullptr, &residuals, nullptr, nullptr)) {
-    return 0.0;
-  }
+double RsMotionWindow::Parallax() const {
   double sum = 0.0;
-  for (std::size_t i = 0; i < s.track_sigmas.size(); ++i) {
-    const double sigma_px = s.track_sigmas[i] * kWidth;
-    sum += sigma_px * sigma_px *
-           (residuals[2 * i] * residuals[2 * i] + residuals[2 * i + 1] * residuals[2 * i + 1]);
+  for (const Eigen::Vector4d& p : impl_->parallax) {
+    sum += p.squaredNorm();
   }
-  return std::sqrt(sum / static_cast<double>(s.track_sigmas.size()));
+  return 0.5 * kWidth * std::sqrt(sum / static_cast<double>(impl_->parallax.size()));
 }
 
 }  // namespace rsstab::stabilizer

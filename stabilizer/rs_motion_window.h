@@ -82,8 +82,8 @@ class RsMotionWindow {
   // says how stiff the motion is.
   [[nodiscard]] std::vector<double> LogEvidence(std::span<const double> jerk_weights);
 
-  // RMS of the track residuals (robust), px at 640 px width.
-  [[nodiscard]] double TrackResidual();
+  // RMS of the motion, at the edge of the picture, that no rotation explains: px at 640 px width.
+  [[nodiscard]] double Parallax() const;
 
  private:
   struct Impl;

@@ -77,6 +77,9 @@ Result<RsMotion> FusedMotionSource::EstimateMotion(const FrameContext& frame) {
     return unknown();
   }
   const double readout_s = *camera_.readout_s;
+  if (readout_s == 0.0) {
+    return RsMotion{};  // a global shutter: no field, and nothing to render
+  }
   const auto reference = motion.spline->CameraFromWorld(motion.time_s);
   if (!reference) {
     return unknown();

@@ -55,7 +55,7 @@ stabilizer::PathSmootherOptions SmootherOptions(const StabilizeOptions& options,
   smoother.focal_ratio =
       selection.camera ? selection.camera->fx / selection.camera->width : kDefaultFocalRatio;
   smoother.adaptive_zoom = options.zoom == ZoomMode::kAdaptive && !options.tripod;
-  smoother.rotation_known = selection.source != nullptr && selection.source->Name() == "gyro";
+  smoother.rotation_known = selection.rotation_is_known;
   smoother.mesh_columns = options.mesh_columns;
   smoother.mesh_rows = options.mesh_rows;
   return smoother;
@@ -162,7 +162,7 @@ struct MotionStage::Impl {
 
   // What the RS source knows of the turn between two frames, normalised; empty when nothing.
   [[nodiscard]] std::optional<Eigen::Matrix3d> PredictedMotion(double from_s, double to_s) const {
-    if (!selection->source || !selection->camera) {
+    if (!selection->rotation_is_known || !selection->camera) {
       return std::nullopt;
     }
     const auto from = selection->source->CameraFromWorld(from_s);

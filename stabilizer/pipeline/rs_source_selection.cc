@@ -20,6 +20,9 @@ namespace {
 
 // Where nobody knows the focal length: 64 degrees across.
 constexpr double kDefaultFocalRatio = 0.8;
+// Tracks that a rotation explains up to this, RMS at the picture's edge and at 640 px width, come
+// from a camera that only turns; walking past things moves them by more.
+constexpr double kMaxParallax_px = 0.1;
 // Telemetry tracks lag or lead their video by exposure, readout and packet times.
 constexpr double kSharedClockSearchS = 0.25;
 
@@ -146,6 +149,7 @@ Result<RsSelection> SelectGyro(const StabilizeOptions& options, CameraKnowledge 
   selection.source = std::make_unique<igf::GyroMotionSource>(std::move(*source));
   selection.camera = known.camera;
   selection.readout_s = readout_s;
+  selection.rotation_is_known = true;
   selection.gyro_offset_s = sync->offset_s;
   selection.reason = fmt::format(
       "gyro log {} ({:.0f} Hz), offset {:.1f} ms, readout {:.1f} ms ({}), focal length {:.0f} px "
@@ -232,8 +236,11 @@ Result<RsSelection> SelectFused(const StabilizeOptions& options, const ClipGeome
   }
   known.camera.readout_s = readout_s;
   const std::string shutter = DescribeShutter(calibration);
-  if (readout_s == 0.0) {
-    return WithoutSource(known, "left alone: " + shutter);
+  const bool only_turns = calibration.num_windows > 0 && calibration.parallax_px < kMaxParallax_px;
+  if (readout_s == 0.0 && !only_turns) {
+    RsSelection selection = WithoutSource(known, "left alone: " + shutter);
+    selection.calibration = calibration;
+    return selection;
   }
   const stabilizer::RsMotionModel model = {.frame_interval_s = 1.0 / clip.frames_per_second,
                                            .readout_s = readout_s,
@@ -244,14 +251,19 @@ Result<RsSelection> SelectFused(const StabilizeOptions& options, const ClipGeome
   if (!source) {
     return Propagate(std::move(source.error()));
   }
+  const std::string camera = fmt::format("focal length {:.0f} px ({})", known.camera.fx,
+                                         focal_is_found         ? "estimated"
+                                         : known.focal_is_known ? "given"
+                                                                : "assumed");
   RsSelection selection = WithoutSource(
-      known, fmt::format("one camera rotation from the tracks, {}, focal length {:.0f} px ({})",
-                         shutter, known.camera.fx,
-                         focal_is_found         ? "estimated"
-                         : known.focal_is_known ? "given"
-                                                : "assumed"));
+      known, readout_s == 0.0
+                 ? fmt::format("left alone: {}; the camera only turns, {}", shutter, camera)
+                 : fmt::format("one camera rotation from the tracks, {}, {}", shutter, camera));
+  selection.camera = known.camera;
   selection.source = std::move(*source);
   selection.readout_s = readout_s;
+  selection.rotation_is_known = only_turns;
+  selection.calibration = calibration;
   return selection;
 }
 
