@@ -14,8 +14,8 @@ struct CumulativeBasis {
 
 CumulativeBasis BasisAt(double u) {
   const double u2 = u * u;
-  return {{(5.0 + 3.0 * u - 3.0 * u2 + u2 * u) / 6.0, (1.0 + 3.0 * u + 3.0 * u2 - 2.0 * u2 * u) / 6.0,
-           u2 * u / 6.0},
+  return {{(5.0 + 3.0 * u - 3.0 * u2 + u2 * u) / 6.0,
+           (1.0 + 3.0 * u + 3.0 * u2 - 2.0 * u2 * u) / 6.0, u2 * u / 6.0},
           {(1.0 - 2.0 * u + u2) / 2.0, (1.0 + 2.0 * u - 2.0 * u2) / 2.0, u2 / 2.0}};
 }
 
@@ -68,8 +68,8 @@ SplinePoint EvaluateSplineWithJacobians(const Eigen::Quaterniond& first_knot,
   SplinePoint point;
   // Body rate: each later turn carries the rates of the earlier ones into its own frame.
   for (std::size_t j = 0; j < 3; ++j) {
-    point.rate_rad_s = turns[j].conjugate() * point.rate_rad_s +
-                       basis.slope[j] / interval_s * steps[j].turn;
+    point.rate_rad_s =
+        turns[j].conjugate() * point.rate_rad_s + basis.slope[j] / interval_s * steps[j].turn;
   }
   // A change of turn j is seen through the turns after it.
   for (Eigen::Matrix3d& block : point.by_knot) {

@@ -108,8 +108,8 @@ struct Opinion {
 // Information-weighted mean, and its covariance from how much the opinions differ (the sandwich
 // estimator: errors that all tracks of a stretch share count as one), but never less than the
 // information promises.
-ClipCalibrator::Consensus Join(const std::vector<Opinion>& opinions, const Eigen::Vector2d& prior_sigma,
-               const Eigen::Vector2d& prior) {
+ClipCalibrator::Consensus Join(const std::vector<Opinion>& opinions,
+                               const Eigen::Vector2d& prior_sigma, const Eigen::Vector2d& prior) {
   Eigen::Matrix2d total = prior_sigma.array().square().inverse().matrix().asDiagonal();
   Eigen::Vector2d weighted = total * prior;
   for (const Opinion& o : opinions) {
@@ -166,9 +166,8 @@ ClipCalibration ClipCalibrator::Calibrate() {
   FinishStretch();
   ClipCalibration result;
   result.focal = {options_.focal.value_or(kDefaultFocal), 0.0, options_.focal.has_value()};
-  std::erase_if(kept_, [](const Stretch& s) {
-    return s.excitement < kMinExcitement_px * kMinExcitement_px;
-  });
+  std::erase_if(
+      kept_, [](const Stretch& s) { return s.excitement < kMinExcitement_px * kMinExcitement_px; });
   result.num_windows = kept_.size();
   if (options_.readout_s) {
     result.verdict = ShutterVerdict::kGiven;
@@ -280,9 +279,9 @@ ClipCalibrator::Consensus ClipCalibrator::Refine(double readout_s, double jerk_w
     parallax_px[i] = window.Parallax();
     opinions[i].information = unit.asDiagonal() * window.ClipInformation() * unit.asDiagonal();
   });
-  Consensus consensus = Join(opinions, {kReadoutPriorSigma, kFocalPriorSigma},
-                             {readout_s / options_.frame_interval_s,
-                              std::log(options_.focal.value_or(kDefaultFocal))});
+  Consensus consensus = Join(
+      opinions, {kReadoutPriorSigma, kFocalPriorSigma},
+      {readout_s / options_.frame_interval_s, std::log(options_.focal.value_or(kDefaultFocal))});
   consensus.parallax_px = Median(parallax_px);
   return consensus;
 }

@@ -37,8 +37,8 @@ enum class ShutterVerdict {
 // What is the same for the whole clip, as its tracks tell it.
 struct ClipCalibration {
   ShutterVerdict verdict = ShutterVerdict::kCannotBeTold;
-  Estimate readout_s;     // signed, first row to last; 0 unless kRolling or kGiven
-  Estimate focal;         // picture widths
+  Estimate readout_s;  // signed, first row to last; 0 unless kRolling or kGiven
+  Estimate focal;      // picture widths
   double jerk_weight = 0.1;
   std::vector<ReadoutHypothesis> curve;  // in order of readout; empty when given
   std::size_t num_windows = 0;           // stretches of the clip that it is based on

@@ -105,11 +105,11 @@ void RsMotionFusion::EmitFrames(double decided_until_s, const SplineStretch& str
   while (!waiting_.empty() && waiting_.front().time_s <= decided_until_s) {
     const WaitingFrame frame = waiting_.front();
     waiting_.pop_front();
-    const auto first = static_cast<std::size_t>(std::max(
-        0.0, std::floor((frame.time_s - reach_s - stretch.start_s) / stretch.interval_s)));
+    const auto first = static_cast<std::size_t>(
+        std::max(0.0, std::floor((frame.time_s - reach_s - stretch.start_s) / stretch.interval_s)));
     igf::So3Spline spline(stretch.KnotTime(first), stretch.interval_s);
-    for (std::size_t k = first;
-         k < stretch.knots.size() && stretch.KnotTime(k) <= frame.time_s + reach_s + stretch.interval_s;
+    for (std::size_t k = first; k < stretch.knots.size() &&
+                                stretch.KnotTime(k) <= frame.time_s + reach_s + stretch.interval_s;
          ++k) {
       spline.Append(stretch.knots[k]);
     }

@@ -19,9 +19,9 @@ constexpr double kMinDepth = 1e-2;
 
 }  // namespace
 
-RowTimedTrackCost::RowTimedTrackCost(const SplineState& state, double from_time_s,
-                                     double to_time_s, const TrackCell& cell, double sigma,
-                                     std::size_t first_knot, std::size_t num_knots)
+RowTimedTrackCost::RowTimedTrackCost(const SplineState& state, double from_time_s, double to_time_s,
+                                     const TrackCell& cell, double sigma, std::size_t first_knot,
+                                     std::size_t num_knots)
     : state_(&state),
       from_time_s_(from_time_s),
       to_time_s_(to_time_s),

@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 
-#include "stabilizer/spline_state.h"
+#include "stabilizer/spline_state_detail.h"
 #include "stabilizer/track_cells.h"
 
 namespace rsstab::stabilizer {

@@ -16,7 +16,7 @@
 
 #include "igf/base/rotation.h"
 #include "stabilizer/rs_motion_residuals.h"
-#include "stabilizer/spline_state.h"
+#include "stabilizer/spline_state_detail.h"
 
 namespace rsstab::stabilizer {
 namespace {
@@ -60,8 +60,8 @@ Sparse Jacobian(ceres::Problem& problem, const std::vector<ceres::ResidualBlockI
     residuals.resize(0);
     return {};
   }
-  residuals = Eigen::Map<const Eigen::VectorXd>(values.data(),
-                                                static_cast<Eigen::Index>(values.size()));
+  residuals =
+      Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
   return Sparse(Eigen::Map<const SparseRows>(crs.num_rows, crs.num_cols,
                                              static_cast<Eigen::Index>(crs.values.size()),
                                              crs.rows.data(), crs.cols.data(), crs.values.data()));
@@ -140,7 +140,8 @@ struct RsMotionWindow::Impl {
     for (std::size_t n = 0; n < pairs.size(); ++n) {
       const FramePairCells& pair = pairs[n];
       for (const TrackCell& cell : pair.cells) {
-        const double sigma = model.track_sigma_px / kWidth / std::sqrt(std::min(cell.weight, kMaxCellWeight));
+        const double sigma =
+            model.track_sigma_px / kWidth / std::sqrt(std::min(cell.weight, kMaxCellWeight));
         const std::ptrdiff_t a =
             state.FirstKnotAt(pair.from_time_s + readout_s * cell.from_row_share);
         const std::ptrdiff_t b = state.FirstKnotAt(pair.to_time_s + readout_s * cell.to_row_share);

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "stabilizer/spline_state.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "igf/base/rotation.h"
+#include "stabilizer/spline_state_detail.h"
 
 namespace rsstab::stabilizer {
 
@@ -38,14 +37,15 @@ std::ptrdiff_t SplineState::FirstKnotAt(double time_s) const {
 }
 
 SplineState::Instant SplineState::At(double time_s) const {
-  const std::ptrdiff_t last_segment = static_cast<std::ptrdiff_t>(knots_.size()) - igf::kSplineOrder;
+  const std::ptrdiff_t last_segment =
+      static_cast<std::ptrdiff_t>(knots_.size()) - igf::kSplineOrder;
   Instant instant;
-  instant.first_knot = static_cast<std::size_t>(
-      std::clamp<std::ptrdiff_t>(FirstKnotAt(time_s), 0, last_segment));
+  instant.first_knot =
+      static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(FirstKnotAt(time_s), 0, last_segment));
   const double u =
       (time_s - start_s_) / interval_s_ - static_cast<double>(instant.first_knot) - 1.0;
-  instant.point = igf::EvaluateSplineWithJacobians(
-      knots_[instant.first_knot], &steps_[instant.first_knot], u, interval_s_);
+  instant.point = igf::EvaluateSplineWithJacobians(knots_[instant.first_knot],
+                                                   &steps_[instant.first_knot], u, interval_s_);
   return instant;
 }
 

@@ -178,8 +178,7 @@ Status Analyzer::PushFrame(const FrameView& frame, std::int64_t pts, double time
   if (s.num_frames > 1 && s.num_frames <= kMaxSyncFrames) {
     s.sync_tracks.push_back(Thin(observation.tracks));
   }
-  s.calibrator->Push(
-      stabilizer::SummarizeTracks(observation.tracks, s.lens ? &*s.lens : nullptr));
+  s.calibrator->Push(stabilizer::SummarizeTracks(observation.tracks, s.lens ? &*s.lens : nullptr));
   return s.spool->Append(observation);
 }
 

@@ -52,8 +52,8 @@ class FusedMotionSource final : public RsMotionSource {
   Camera camera_;
   bool lens_is_known_;
   stabilizer::RsMotionFusion fusion_;
-  std::deque<double> times_s_;     // of observed frames that are not decided
-  std::deque<Decided> decided_;    // from first_decided_ on
+  std::deque<double> times_s_;   // of observed frames that are not decided
+  std::deque<Decided> decided_;  // from first_decided_ on
   std::int64_t first_decided_ = 0;
   std::int64_t asked_for_ = -1;
 };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stabilizer/pipeline/rs_source_selection.h"
 
-#include <cmath>
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string_view>
 #include <thread>
@@ -332,8 +332,7 @@ Result<RsSelection> SelectRsSource(const StabilizeOptions& options, const ClipGe
                 "--rs gyro needs a gyro log, and the clip carries none: name one with --gyro FILE");
   }
   if (!evidence.calibration) {
-    return WithoutSource(known,
-                         "left alone: there is no gyro log, and the clip is not known yet");
+    return WithoutSource(known, "left alone: there is no gyro log, and the clip is not known yet");
   }
   return SelectFused(options, clip, known, *evidence.calibration);
 }

@@ -38,8 +38,9 @@ struct ClipEvidence {
 [[nodiscard]] bool NeedsTracks(const StabilizeOptions& options, const RsInputs& inputs);
 
 // What the clip's calibration has to find out, from what is known already.
-[[nodiscard]] stabilizer::ClipCalibrationOptions CalibrationOptions(
-    const StabilizeOptions& options, const ClipGeometry& clip, const RsInputs& inputs);
+[[nodiscard]] stabilizer::ClipCalibrationOptions CalibrationOptions(const StabilizeOptions& options,
+                                                                    const ClipGeometry& clip,
+                                                                    const RsInputs& inputs);
 
 // The lens to take out of the tracks; empty when none is known.
 [[nodiscard]] std::optional<Camera> KnownLens(const StabilizeOptions& options,
@@ -47,8 +48,9 @@ struct ClipEvidence {
 
 // Chooses the rolling-shutter source, and says why. `evidence` is needed when NeedsTracks();
 // without a calibration the tracks' own motion is not used. With kAuto an untrustworthy gyro means
-// a warning and that the tracks are asked; with kGyro it is an error: kNotFound without a log, kUntrustworthy when it does not fit.
-// With kDiffusion: the errors of rsdiff::FindModel and rsdiff::SingleImageEstimator::Load.
+// a warning and that the tracks are asked; with kGyro it is an error: kNotFound without a log,
+// kUntrustworthy when it does not fit. With kDiffusion: the errors of rsdiff::FindModel and
+// rsdiff::SingleImageEstimator::Load.
 [[nodiscard]] Result<RsSelection> SelectRsSource(const StabilizeOptions& options,
                                                  const ClipGeometry& clip, const RsInputs& inputs,
                                                  const ClipEvidence& evidence,

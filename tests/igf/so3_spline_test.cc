@@ -47,8 +47,8 @@ TEST(So3Jacobians, RightJacobianIsTheSlopeOfTheExponential) {
     const Eigen::Matrix3d jacobian = RightJacobianSo3(v);
     for (int axis = 0; axis < 3; ++axis) {
       const Eigen::Vector3d e = kStep * Eigen::Vector3d::Unit(axis);
-      const Eigen::Quaterniond turned = ExpSo3(Eigen::Vector3d(v - e)).conjugate() *
-                                        ExpSo3(Eigen::Vector3d(v + e));
+      const Eigen::Quaterniond turned =
+          ExpSo3(Eigen::Vector3d(v - e)).conjugate() * ExpSo3(Eigen::Vector3d(v + e));
       EXPECT_TRUE(jacobian.col(axis).isApprox(LogSo3(turned) / (2.0 * kStep), kTolerance));
     }
     EXPECT_TRUE((jacobian * InverseRightJacobianSo3(v)).isIdentity(1e-11));

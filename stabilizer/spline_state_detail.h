@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#ifndef RSSTAB_STABILIZER_SPLINE_STATE_H_
-#define RSSTAB_STABILIZER_SPLINE_STATE_H_
+#ifndef RSSTAB_STABILIZER_SPLINE_STATE_DETAIL_H_
+#define RSSTAB_STABILIZER_SPLINE_STATE_DETAIL_H_
 
 #include <ceres/evaluation_callback.h>
 
@@ -52,4 +52,4 @@ class SplineState final : public ceres::EvaluationCallback {
 
 }  // namespace rsstab::stabilizer
 
-#endif  // RSSTAB_STABILIZER_SPLINE_STATE_H_
+#endif  // RSSTAB_STABILIZER_SPLINE_STATE_DETAIL_H_
