@@ -116,8 +116,7 @@ Result<std::string> RunChild(const std::vector<std::string>& command,
     kill(child, SIGKILL);
   }
   const int status = WaitFor(child);
-  // A terminal's interrupt reaches both programs, and the other one may be quicker to end.
-  if (!went_on || (status != 0 && CancelRequested())) {
+  if (!went_on) {
     return Fail(ErrorCode::kCancelled, "stopped as asked for");
   }
   if (WIFSIGNALED(status)) {

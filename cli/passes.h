@@ -2,7 +2,6 @@
 #ifndef RSSTAB_CLI_PASSES_H_
 #define RSSTAB_CLI_PASSES_H_
 
-#include <functional>
 #include <memory>
 #include <string>
 
@@ -44,14 +43,11 @@ struct SteadyClip {
     std::unique_ptr<media::VideoReader> clip, const pipeline::StabilizeOptions& options,
     const std::string& analysis_file, PassNumber number, const CommandContext& context);
 
-// Sees each frame and what became of it, in order; an error ends the pass.
-using RenderObserver = std::function<Status(const media::VideoFrame& frame, const Frame& steady)>;
-
 // Pass 2: writes the steady clip, and logs what became of it. Errors as above.
 [[nodiscard]] Status RenderClip(std::unique_ptr<media::VideoReader> clip, SteadyClip output,
                                 const pipeline::StabilizeOptions& options,
                                 const std::string& analysis_file, PassNumber number,
-                                const CommandContext& context, const RenderObserver& observer = {});
+                                const CommandContext& context);
 
 }  // namespace rsstab::cli
 

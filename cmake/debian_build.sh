@@ -12,6 +12,8 @@ rsstab_build_packages=(
 rsstab_check_packages=(
   clang-format ffmpeg melt libtorch-dev libopenblas0-pthread
   python3-torch python3-opencv python3-numpy python3-matplotlib)
+# For the tests that build FFmpeg from its sources (RSSTAB_TEST_FFMPEG=1).
+rsstab_ffmpeg_packages=(dpkg-dev make gcc valgrind)
 
 # install_missing PACKAGE...: asks apt for those that are not there, as root or through sudo, never
 # asking a question.

@@ -64,6 +64,9 @@ run_tests() {
 }
 
 step "packages" install_missing "${rsstab_build_packages[@]}" "${rsstab_check_packages[@]}"
+if [[ ${RSSTAB_TEST_FFMPEG-} == 1 ]]; then
+  step "packages to build FFmpeg" install_missing "${rsstab_ffmpeg_packages[@]}"
+fi
 step "build (release, warnings are errors)" build_preset release all -DRSSTAB_TEST_FILTER=
 run_tests release
 step "build (address and undefined-behaviour sanitizers)" build_preset sanitize all \

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "cli/output_names.h"
-#include "cli/pages/steady_report.h"
 #include "cli/passes.h"
 #include "stabilizer/analysis_file.h"
 
@@ -26,13 +25,8 @@ Status RunRender(const Invocation& invocation, const CommandContext& context) {
   if (!output) {
     return Propagate(output.error());
   }
-  auto report =
-      OpenSteadyReport(invocation.encode, {invocation.input, output->path, analysis_file});
-  if (!report) {
-    return Propagate(report.error());
-  }
-  return RenderWithReport(std::move(*clip), std::move(*output), invocation.encode,
-                          invocation.stabilize, analysis_file, {1, 1}, std::move(*report), context);
+  return RenderClip(std::move(*clip), std::move(*output), invocation.stabilize, analysis_file,
+                    {1, 1}, context);
 }
 
 }  // namespace rsstab::cli

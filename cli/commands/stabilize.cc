@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "cli/output_names.h"
-#include "cli/pages/steady_report.h"
 #include "cli/passes.h"
 
 namespace rsstab::cli {
@@ -32,17 +31,12 @@ Status RunStabilize(const Invocation& invocation, const CommandContext& context)
     return Propagate(output.error());
   }
 
-  auto report = OpenSteadyReport(invocation.encode, {invocation.input, output->path});
-  if (!report) {
-    return Propagate(report.error());
-  }
-
   const auto analysis = AnalyzeClip(std::move(*clip), options, analysis_file, {1, 2}, context);
   if (!analysis) {
     return Propagate(analysis.error());
   }
-  return RenderWithReport(std::move(*second_look), std::move(*output), invocation.encode, options,
-                          analysis_file, {2, 2}, std::move(*report), context);
+  return RenderClip(std::move(*second_look), std::move(*output), options, analysis_file, {2, 2},
+                    context);
 }
 
 }  // namespace rsstab::cli

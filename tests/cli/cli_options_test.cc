@@ -188,8 +188,7 @@ TEST(CliOptions, ManualAndCompletionKnowTheOptions) {
   EXPECT_THAT(manual, StartsWith(".TH RS\\-STABILIZE 1"));
   EXPECT_THAT(manual, HasSubstr("\\-\\-gyro\\-offset S"));
   EXPECT_THAT(completion, HasSubstr("--gyro-offset"));
-  EXPECT_THAT(completion,
-              HasSubstr("--rs) COMPREPLY=($(compgen -W \"auto fused gyro diffusion tracks off\""));
+  EXPECT_THAT(completion, HasSubstr("--rs) COMPREPLY=($(compgen -W \"auto gyro diffusion off\""));
 }
 
 TEST(CliOptions, VersionIsOneLine) {
