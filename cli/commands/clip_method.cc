@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <set>
 #include <sstream>
 #include <string_view>
 #include <utility>
 
 #include "cli/child_process.h"
+#include "cli/commands/method_list.h"
 #include "cli/passes.h"
 #include "cli/stopwatch.h"
 
@@ -24,15 +24,6 @@ const char* const kVidstab = "vidstab";
 const char* const kDeshake = "deshake";
 const char* const kSteadyClip = "steady.mkv";
 
-std::vector<std::string> Split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, separator);) {
-    parts.push_back(part);
-  }
-  return parts;
-}
-
 const StabilizeSpec* FindOption(const std::string& name) {
   const auto& table = pipeline::StabilizeOptionTable();
   const auto found = std::find_if(table.begin(), table.end(),
@@ -40,51 +31,54 @@ const StabilizeSpec* FindOption(const std::string& name) {
   return found == table.end() ? nullptr : &*found;
 }
 
-std::vector<std::string> RsWords() { return Split(FindOption("rs")->value_name, '|'); }
+std::vector<std::string> RsWords() {
+  std::vector<std::string> words;
+  std::istringstream choices(FindOption("rs")->value_name);
+  for (std::string word; std::getline(choices, word, '|');) {
+    words.push_back(word);
+  }
+  return words;
+}
 
-// "readout=20" or, for a switch, "tripod".
-Status ApplySetting(const std::string& setting, ClipMethod& method) {
-  const std::size_t equals = setting.find('=');
-  const StabilizeSpec* const spec = FindOption(setting.substr(0, equals));
+Status ApplySetting(const std::string& name, const std::string& value, ClipMethod& method) {
+  const StabilizeSpec* const spec = FindOption(name);
   if (spec == nullptr || spec->name == "rs") {
     return Fail(ErrorCode::kInvalidArgument,
                 "--methods: {}: the main command has no option --{} that could go with a method.",
-                method.name, setting.substr(0, equals));
+                method.name, name);
   }
-  const std::string value = equals == std::string::npos ? "true" : setting.substr(equals + 1);
   if (Status status = spec->set(method.options, value); !status) {
     return Propagate(status.error(), "--methods: " + method.name);
   }
   return {};
 }
 
-Result<ClipMethod> ParseMethod(const std::string& text) {
-  std::vector<std::string> parts = Split(text, '+');
-  const std::string word = parts.empty() ? "" : parts.front();
+Result<ClipMethod> MakeMethod(const MethodSpec& spec) {
   ClipMethod method;
-  method.name = text;
+  method.name = spec.text;
   const std::vector<std::string> rs_words = RsWords();
-  if (std::find(rs_words.begin(), rs_words.end(), word) != rs_words.end()) {
+  if (std::find(rs_words.begin(), rs_words.end(), spec.name) != rs_words.end()) {
     method.tool = ClipTool::kOwn;
-    if (Status status = FindOption("rs")->set(method.options, word); !status) {
+    if (Status status = FindOption("rs")->set(method.options, spec.name); !status) {
       return Propagate(status.error());
     }
-  } else if (word == kVidstab || word == kDeshake) {
-    method.tool = word == kVidstab ? ClipTool::kVidstab : ClipTool::kDeshake;
-  } else if (word != kInput) {
+  } else if (spec.name == kVidstab || spec.name == kDeshake) {
+    method.tool = spec.name == kVidstab ? ClipTool::kVidstab : ClipTool::kDeshake;
+  } else if (spec.name != kInput) {
     return Fail(ErrorCode::kInvalidArgument, "--methods: there is no method '{}'; choose from {}.",
-                word, fmt::join(ClipMethodNames(), ", "));
+                spec.name, fmt::join(ClipMethodNames(), ", "));
   }
-  if (parts.size() > 1 && method.tool != ClipTool::kOwn) {
-    return Fail(ErrorCode::kInvalidArgument, "--methods: {}: '{}' takes no options.", text, word);
+  if (!spec.settings.empty() && method.tool != ClipTool::kOwn) {
+    return Fail(ErrorCode::kInvalidArgument, "--methods: {}: '{}' takes no options.", spec.text,
+                spec.name);
   }
-  for (std::size_t i = 1; i < parts.size(); ++i) {
-    if (Status status = ApplySetting(parts[i], method); !status) {
+  for (const auto& [name, value] : spec.settings) {
+    if (Status status = ApplySetting(name, value, method); !status) {
       return Propagate(status.error());
     }
   }
   if (Status status = pipeline::Validate(method.options); !status) {
-    return Propagate(status.error(), "--methods: " + text);
+    return Propagate(status.error(), "--methods: " + spec.text);
   }
   return method;
 }
@@ -216,15 +210,15 @@ std::vector<std::string> ClipMethodNames() {
 }
 
 Result<std::vector<ClipMethod>> ParseClipMethods(const std::string& list) {
+  const auto specs = ParseMethodList(list);
+  if (!specs) {
+    return Propagate(specs.error());
+  }
   std::vector<ClipMethod> methods;
-  std::set<std::string> seen;
-  for (const std::string& text : Split(list, ',')) {
-    auto method = ParseMethod(text);
+  for (const MethodSpec& spec : *specs) {
+    auto method = MakeMethod(spec);
     if (!method) {
       return Propagate(method.error());
-    }
-    if (!seen.insert(text).second) {
-      return Fail(ErrorCode::kInvalidArgument, "--methods: '{}' is there twice.", text);
     }
     methods.push_back(std::move(*method));
   }

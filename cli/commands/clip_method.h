@@ -33,10 +33,10 @@ struct ClipMethod {
 // The words that stand for methods: input, each word of the option --rs, vidstab, deshake.
 [[nodiscard]] std::vector<std::string> ClipMethodNames();
 
-// "input,off,gyro+gyro-offset=0.005,vidstab": methods separated by commas; those of this program
-// may have options of the main command behind them.
-// Errors: kInvalidArgument for an unknown word (naming all), an option that is none, has a bad
-// value or does not go with the method, the same method twice, or an empty list.
+// "input,off,gyro@gyro-offset=0.005,readout=20,vidstab": a list as method_list.h has it; methods of
+// this program may have options of the main command as settings (a switch is name=true).
+// Errors: those of ParseMethodList; kInvalidArgument for an unknown word (naming all), an option
+// that is none, has a bad value or does not go with the method, or an empty list.
 [[nodiscard]] Result<std::vector<ClipMethod>> ParseClipMethods(const std::string& list);
 
 // Why a tool cannot run here; empty when it can. Asks the `ffmpeg` on PATH what filters it has.

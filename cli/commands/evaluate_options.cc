@@ -126,7 +126,7 @@ OptionTable<Options> BuildTable() {
       "gyro-onestep[@bands=60] where pictures have gyro logs. Data sets are given to all of them "
       "unless told otherwise. Of clips: input, any word of "
       "the main command's --rs, vidstab and deshake (FFmpeg's, where an ffmpeg is installed), all "
-      "of them unless given; main options may follow, as in off+smoothness=2.");
+      "of them unless given; main options may follow, as in off@smoothness=2.");
   add(TextOption<Options>("model", "FILE", &Options::model),
       "Model file, its folder, or the name of an installed model; the default model unless given.");
   add(TextOption<Options>("regression-model", "FILE", &Options::regression_model),

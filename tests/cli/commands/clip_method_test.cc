@@ -29,10 +29,10 @@ TEST(ClipMethods, EveryWordIsAMethod) {
 
 TEST(ClipMethods, OptionsGoWithTheirMethodOnly) {
   const auto methods =
-      ParseClipMethods("off+smoothness=0.25+tripod,gyro+gyro-offset=-0.005+readout=20,off");
+      ParseClipMethods("off@smoothness=0.25,tripod=true,gyro@gyro-offset=-0.005,readout=20,off");
   ASSERT_TRUE(methods) << methods.error().message;
   ASSERT_EQ(methods->size(), 3U);
-  EXPECT_EQ((*methods)[0].name, "off+smoothness=0.25+tripod");
+  EXPECT_EQ((*methods)[0].name, "off@smoothness=0.25,tripod=true");
   EXPECT_EQ((*methods)[0].options.rs, RsChoice::kOff);
   EXPECT_EQ((*methods)[0].options.smoothness_s, 0.25);
   EXPECT_TRUE((*methods)[0].options.tripod);
@@ -50,14 +50,13 @@ TEST(ClipMethods, MistakesAreNamed) {
   for (const Case& mistake : {
            Case{"input,warp", "there is no method 'warp'; choose from input, "},
            Case{"", "at least one of input, "},
-           Case{"off,,gyro", "there is no method ''"},
-           Case{"off,gyro,off", "'off' is there twice"},
-           Case{"off+smoothnes=1", "--smoothnes"},
-           Case{"off+smoothness=calm", "'calm'"},
-           Case{"off+rs=gyro", "--rs"},
-           Case{"off+gyro=log.csv", "--rs off uses no gyro log"},
-           Case{"vidstab+smoothness=1", "'vidstab' takes no options"},
-           Case{"input+crop=1", "'input' takes no options"},
+           Case{"off,,gyro", "names no method"},
+           Case{"off@smoothnes=1", "--smoothnes"},
+           Case{"off@smoothness=calm", "'calm'"},
+           Case{"off@rs=gyro", "--rs"},
+           Case{"off@gyro=log.csv", "--rs off uses no gyro log"},
+           Case{"vidstab@smoothness=1", "'vidstab' takes no options"},
+           Case{"input@crop=1", "'input' takes no options"},
        }) {
     const auto methods = ParseClipMethods(mistake.list);
     ASSERT_FALSE(methods) << mistake.list;

@@ -112,7 +112,7 @@ TEST_F(EvaluateClipsTest, TruthTellsTheMethodsApart) {
 }
 
 TEST_F(EvaluateClipsTest, ReportsHoldEveryFigure) {
-  EvaluateOptions options = Options(".", "input,off+smoothness=0.5");
+  EvaluateOptions options = Options(".", "input,off@smoothness=0.5");
   std::int64_t seen = 0;
   const auto report =
       EvaluateClips(options, SilentLogger(), [&](std::int64_t done, std::int64_t all) {
@@ -132,7 +132,7 @@ TEST_F(EvaluateClipsTest, ReportsHoldEveryFigure) {
   EXPECT_EQ(json["clips"][0]["name"], "real.mkv");
   EXPECT_EQ(json["clips"][1]["name"], "vibration");
   EXPECT_EQ(json["clips"][1]["true_readout_ms"], 20.0);
-  const Json& off = json["clips"][1]["methods"]["off+smoothness=0.5"];
+  const Json& off = json["clips"][1]["methods"]["off@smoothness=0.5"];
   for (const char* figure : {"wobble_px",
                              "row_wobble_px",
                              "jitter_px",
@@ -162,13 +162,13 @@ TEST_F(EvaluateClipsTest, ReportsHoldEveryFigure) {
   EXPECT_EQ(off["rs_source"], "none");
   EXPECT_EQ(off["frames"], kFrames);
   EXPECT_TRUE(json["clips"][0]["methods"]["input"]["camera_residual_px"].is_null());
-  EXPECT_EQ(json["means"]["simulated"]["off+smoothness=0.5"]["jitter_px"], off["jitter_px"]);
+  EXPECT_EQ(json["means"]["simulated"]["off@smoothness=0.5"]["jitter_px"], off["jitter_px"]);
   EXPECT_EQ(json["means"]["simulated"]["input"]["clips"], 1);
 
   const std::string text = FormatText(*report);
   EXPECT_THAT(text, HasSubstr("left out: broken.mp4: "));
   EXPECT_THAT(text, HasSubstr("vibration: simulated, readout 20.0 ms, 480x270, 15 frames"));
-  EXPECT_THAT(text, HasSubstr("\noff+smoothness=0.5 "));
+  EXPECT_THAT(text, HasSubstr("\noff@smoothness=0.5 "));
   EXPECT_THAT(text, Not(HasSubstr("nan")));
   EXPECT_THAT(text, Not(HasSubstr("mean of")));  // there is one clip of each kind
 
