@@ -116,7 +116,8 @@ Result<std::string> RunChild(const std::vector<std::string>& command,
     kill(child, SIGKILL);
   }
   const int status = WaitFor(child);
-  if (!went_on) {
+  // A terminal's interrupt reaches both programs, and the other one may be quicker to end.
+  if (!went_on || (status != 0 && CancelRequested())) {
     return Fail(ErrorCode::kCancelled, "stopped as asked for");
   }
   if (WIFSIGNALED(status)) {

@@ -156,10 +156,14 @@ std::vector<CommandText> BuildTexts() {
        "[OPTIONS] FOLDER",
        "makes a shaky rolling-shutter clip of which everything is known",
        "Writes into FOLDER a rolling-shutter clip (rs.mp4), what a global shutter would have seen "
-       "(gs.mp4), the gyro log (gyro.csv), the camera (camera.json) and the truth (truth.json).",
+       "(gs.mp4), the gyro log (gyro.csv), the camera (camera.json) and the truth (truth.json); "
+       "or, "
+       "with --rs-real, a data set of labelled pictures.",
        {{"rs-stabilize simulate walking --motion walking", "ten seconds of walking"},
         {"rs-stabilize simulate mine --image photo.jpg --motion vibration --readout 28",
-         "from a photograph"}}},
+         "from a photograph"},
+        {"rs-stabilize simulate set --rs-real --photos holidays --samples 300",
+         "labelled pictures in RS-Real's layout"}}},
       {CommandId::kEvaluate,
        "evaluate",
        "[OPTIONS]",
@@ -171,7 +175,10 @@ std::vector<CommandText> BuildTexts() {
        {{"rs-stabilize evaluate --photos holidays", "known motions, the default model"},
         {"rs-stabilize evaluate --photos holidays --samples 16 --steps 8 --csv all.csv",
          "other sampling, every picture's figures"},
-        {"rs-stabilize evaluate --protocol pairs --pairs Fastec", "real pictures"},
+        {"rs-stabilize evaluate --dataset pairs:Fastec", "real pictures"},
+        {"rs-stabilize evaluate --dataset rs-real:RS_Real --split test --methods "
+         "none,gyro,diffusion",
+         "pictures with gyro logs or labels"},
         {"rs-stabilize evaluate --clips holidays --methods input,auto,off,vidstab",
          "whole clips"}}},
   };

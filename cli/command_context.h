@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "cli/progress_reporter.h"
+#include "cli/stage_times.h"
 #include "igf/base/log.h"
 
 namespace rsstab::cli {
@@ -13,6 +14,8 @@ namespace rsstab::cli {
 struct CommandContext {
   Logger logger;
   std::shared_ptr<ProgressReporter> reporter;
+  // What the passes spent their time on, for reports; written by the thread that runs them.
+  std::shared_ptr<StageTimes> times = std::make_shared<StageTimes>();
 };
 
 }  // namespace rsstab::cli

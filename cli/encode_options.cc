@@ -45,7 +45,10 @@ pipeline::OptionTable<EncodeOptions> BuildTable() {
       "Clip to write; its ending chooses the container, - writes Matroska to standard output. "
       "Without it the clip lies beside the input, with -stable added to the name.");
   add(pipeline::SwitchOption("overwrite", &O::overwrite), "Output",
-      "Replace the output file if it exists.");
+      "Replace the output file, and the report, if they exist.");
+  add(pipeline::TextOption("report", "FILE", &O::report), "Output",
+      "Also write an HTML page, all in one file: pictures before and after, the camera path, the "
+      "motion within the frames, what was used and how long it took.");
   add(pipeline::TextOption("codec", "NAME", &O::codec), "Encoding",
       "h264, hevc, vp9, av1, mpeg4, mjpeg, ffv1, prores, or the name of any encoder of libavcodec. "
       "Without it what fits the container: H.264 where it can.");

@@ -15,6 +15,7 @@ namespace rsstab::cli {
 struct EncodeOptions {
   std::string output;  // empty: beside the input; "-": standard output
   bool overwrite = false;
+  std::string report;         // file for an HTML page; empty: none
   std::string codec;          // empty: what fits the container, H.264 where it can
   std::optional<double> crf;  // empty: 18 for H.264, similar elsewhere
   std::string preset;         // empty: medium

@@ -93,8 +93,9 @@ Result<stabilizer::ClipAnalysis> AnalyzeClip(std::unique_ptr<media::VideoReader>
 
   context.reporter->BeginPass(number.pass, number.passes, "analyze", info.frame_count);
   ReadAhead frames(std::move(clip));
+  StageTimes& times = *context.times;
   while (true) {
-    auto frame = frames.Next();
+    auto frame = times.Measure("Pass 1: wait for the decoder", [&] { return frames.Next(); });
     if (CancelRequested()) {
       return Stopped();
     }
@@ -105,13 +106,19 @@ Result<stabilizer::ClipAnalysis> AnalyzeClip(std::unique_ptr<media::VideoReader>
       break;
     }
     const media::VideoFrame& picture = **frame;
-    if (Status status = (*analyzer)->PushFrame(picture.frame.View(), picture.pts, picture.time_s);
+    if (Status status = times.Measure("Pass 1: look at the frames",
+                                      [&] {
+                                        return (*analyzer)->PushFrame(picture.frame.View(),
+                                                                      picture.pts, picture.time_s);
+                                      });
         !status) {
       return Propagate(status.error());
     }
     context.reporter->Update(picture.index + 1);
   }
-  auto analysis = (*analyzer)->Finish([] { return CancelRequested(); });
+  auto analysis = times.Measure("Pass 1: motion and path of the clip", [&] {
+    return (*analyzer)->Finish([] { return CancelRequested(); });
+  });
   if (!analysis && analysis.error().code == ErrorCode::kCancelled) {
     return Stopped();
   }
@@ -121,7 +128,8 @@ Result<stabilizer::ClipAnalysis> AnalyzeClip(std::unique_ptr<media::VideoReader>
 
 Status RenderClip(std::unique_ptr<media::VideoReader> clip, SteadyClip output,
                   const pipeline::StabilizeOptions& options, const std::string& analysis_file,
-                  PassNumber number, const CommandContext& context) {
+                  PassNumber number, const CommandContext& context,
+                  const RenderObserver& observer) {
   const media::VideoInfo info = clip->info();
   auto renderer =
       pipeline::Renderer::Create(options, analysis_file, info.width, info.height, context.logger);
@@ -132,8 +140,9 @@ Status RenderClip(std::unique_ptr<media::VideoReader> clip, SteadyClip output,
   context.reporter->BeginPass(number.pass, number.passes, "render", (*renderer)->clip().num_frames);
   ReadAhead frames(std::move(clip));
   WriteBehind steady_clip(std::move(output.writer));
+  StageTimes& times = *context.times;
   while (true) {
-    auto frame = frames.Next();
+    auto frame = times.Measure("Pass 2: wait for the decoder", [&] { return frames.Next(); });
     if (CancelRequested()) {
       return Stopped();
     }
@@ -143,11 +152,21 @@ Status RenderClip(std::unique_ptr<media::VideoReader> clip, SteadyClip output,
     if (!*frame) {
       break;
     }
-    auto steady = (*renderer)->Render((*frame)->frame, (*frame)->pts);
+    auto steady = times.Measure(
+        "Pass 2: render", [&] { return (*renderer)->Render((*frame)->frame, (*frame)->pts); });
     if (!steady) {
       return Propagate(steady.error());
     }
-    if (Status status = steady_clip.Write(std::move(*steady)); !status) {
+    if (observer) {
+      if (Status status = times.Measure("Pass 2: measure for this report",
+                                        [&] { return observer(**frame, *steady); });
+          !status) {
+        return status;
+      }
+    }
+    if (Status status = times.Measure("Pass 2: wait for the encoder",
+                                      [&] { return steady_clip.Write(std::move(*steady)); });
+        !status) {
       return status;
     }
     context.reporter->Update((*frame)->index + 1);
@@ -155,7 +174,9 @@ Status RenderClip(std::unique_ptr<media::VideoReader> clip, SteadyClip output,
   if (Status status = (*renderer)->Finish(); !status) {
     return status;
   }
-  if (Status status = steady_clip.Finish(); !status) {
+  if (Status status =
+          times.Measure("Pass 2: finish the file", [&] { return steady_clip.Finish(); });
+      !status) {
     return status;
   }
   context.reporter->EndPass();

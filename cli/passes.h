@@ -2,6 +2,7 @@
 #ifndef RSSTAB_CLI_PASSES_H_
 #define RSSTAB_CLI_PASSES_H_
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -43,11 +44,14 @@ struct SteadyClip {
     std::unique_ptr<media::VideoReader> clip, const pipeline::StabilizeOptions& options,
     const std::string& analysis_file, PassNumber number, const CommandContext& context);
 
+// Sees each frame and what became of it, in order; an error ends the pass.
+using RenderObserver = std::function<Status(const media::VideoFrame& frame, const Frame& steady)>;
+
 // Pass 2: writes the steady clip, and logs what became of it. Errors as above.
 [[nodiscard]] Status RenderClip(std::unique_ptr<media::VideoReader> clip, SteadyClip output,
                                 const pipeline::StabilizeOptions& options,
                                 const std::string& analysis_file, PassNumber number,
-                                const CommandContext& context);
+                                const CommandContext& context, const RenderObserver& observer = {});
 
 }  // namespace rsstab::cli
 

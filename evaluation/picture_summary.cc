@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evaluation/picture_summary.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>
+#include <utility>
 
 namespace rsstab::evaluation {
 namespace {
@@ -91,9 +93,14 @@ std::vector<PictureGroup> SummarisePictures(std::span<const PictureRecord> recor
   }
   summaries.push_back(SummariseGroup("all", all, seed));
   const auto add_kinds = [&](const char* kind, std::string PictureRecord::*value) {
-    std::map<std::string, Group> groups;
+    std::vector<std::pair<std::string, Group>> groups;  // in the order in which they come
     for (const PictureRecord* record : all) {
-      groups[record->*value].push_back(record);
+      const auto same = [&](const auto& group) { return group.first == record->*value; };
+      auto group = std::find_if(groups.begin(), groups.end(), same);
+      if (group == groups.end()) {
+        group = groups.insert(groups.end(), {record->*value, {}});
+      }
+      group->second.push_back(record);
     }
     if (groups.size() > 1) {
       for (const auto& [name, group] : groups) {

@@ -54,6 +54,10 @@ struct ClipAnalysis {
   std::string options;           // as given, "--name value ..." for the record
 };
 
+// Share of a side of the picture that the output of a frame of `clip` shows, crop and zoom
+// together.
+[[nodiscard]] double KeptRatio(const FrameAnalysis& frame, const ClipAnalysis& clip);
+
 // The analysis file: a magic number with the format's version, one record per frame, the clip's
 // summary as JSON, a footer; every part with a CRC-32. docs/analysis-file.md tells every byte.
 // Fields are stored as 16-bit fractions of their largest displacement (error below 1/65000 of it).

@@ -22,6 +22,11 @@ double ZoomRatio(const Eigen::Matrix3d& rectified_from_output) {
 
 }  // namespace
 
+double KeptRatio(const FrameAnalysis& frame, const ClipAnalysis& clip) {
+  return ZoomRatio(frame.rectified_from_output) *
+         (clip.fixed_zoom ? clip.smallest_crop_ratio : frame.crop_ratio);
+}
+
 struct AnalysisWriter::Impl {
   std::string path;
   std::string partial_path;

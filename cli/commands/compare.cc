@@ -10,6 +10,9 @@
 #include <vector>
 
 #include "cli/media/video_reader.h"
+#include "cli/pages/compare_page.h"
+#include "cli/pages/report_file.h"
+#include "cli/stage_times.h"
 #include "igf/base/parallel_for.h"
 #include "igf/camera_profile_reader.h"
 
@@ -71,6 +74,7 @@ Result<Source> OpenSource(const std::string& path, int threads, const Logger& lo
 // The twin, and what is measured against it.
 struct Truth {
   Source twin;
+  Camera camera;
   stabilizer::TruthMeter input;
   stabilizer::TruthMeter output;
 };
@@ -92,7 +96,7 @@ Result<Truth> OpenTruth(const CompareOptions& options, const Logger& logger) {
   if (!twin) {
     return Propagate(twin.error());
   }
-  return Truth{std::move(*twin), *meter, *meter};
+  return Truth{std::move(*twin), profile->camera, *meter, *meter};
 }
 
 // One meter's work on the frames at hand.
@@ -133,18 +137,20 @@ Measurement OfBoth(const Source& first, const Source& second, Meter& meter) {
 }
 
 CompareReport::Clip Describe(const media::VideoInfo& info, const stabilizer::ClipMeter& meter) {
-  CompareReport::Clip clip{info.path, info.width, info.height, info.frame_rate.Value(), {}, {}};
+  CompareReport::Clip clip{info.path, info.width, info.height, info.frame_rate.Value(), {}, {}, {}};
   if (!(clip.frames_per_second > 0.0)) {
     clip.frames_per_second = kUsualFramesPerSecond;
   }
   clip.metrics = meter.Measure(clip.frames_per_second);
+  clip.poses = meter.Path();
   return clip;
 }
 
 }  // namespace
 
 Result<CompareReport> CompareClips(const CompareOptions& options, const Logger& logger,
-                                   const CompareProgress& progress, CompareScope scope) {
+                                   const CompareProgress& progress, CompareScope scope,
+                                   const CompareObserver& observer) {
   auto input = OpenSource(options.input, options.threads, logger);
   if (!input) {
     return Propagate(input.error());
@@ -204,6 +210,24 @@ Result<CompareReport> CompareClips(const CompareOptions& options, const Logger& 
     if (Status measured = MeasureAll(measurements, pool); !measured) {
       return Propagate(measured.error());
     }
+    if (observer && output) {
+      const auto at = [](const Source& source) { return source.frame ? &*source.frame : nullptr; };
+      ComparedFrames frames;
+      frames.index = index;
+      frames.input_info = &input->reader->info();
+      frames.output_info = &output->reader->info();
+      frames.input_meter = &input_meter;
+      frames.input = at(*input);
+      frames.output = at(*output);
+      if (truth) {
+        frames.twin = at(truth->twin);
+        frames.input_residual = truth->input.LastResidual();
+        frames.camera = &truth->camera;
+      }
+      if (Status observed = observer(frames); !observed) {
+        return Propagate(observed.error());
+      }
+    }
     if (progress && !progress(index + 1, expected)) {
       return Fail(ErrorCode::kCancelled, "Stopped after {} frames, as asked.", index + 1);
     }
@@ -230,9 +254,33 @@ Result<CompareReport> CompareClips(const CompareOptions& options, const Logger& 
 
 Status RunCompare(const CompareOptions& options, const Logger& logger, std::ostream& out,
                   const CompareProgress& progress) {
-  const auto report = CompareClips(options, logger, progress);
+  std::optional<ReportFile> file;
+  ComparePage page;
+  CompareObserver observer;
+  if (!options.report.empty()) {
+    auto opened =
+        ReportFile::Open(options.report, options.overwrite, {options.input, options.output});
+    if (!opened) {
+      return Propagate(opened.error());
+    }
+    file.emplace(std::move(*opened));
+    observer = [&page](const ComparedFrames& frames) { return page.Observe(frames); };
+  }
+  StageTimes times;
+  const auto report = times.Measure("Decode and measure both clips", [&] {
+    return CompareClips(options, logger, progress, CompareScope::kBoth, observer);
+  });
   if (!report) {
     return Propagate(report.error());
+  }
+  if (file) {
+    const auto html = page.Make(*report, options, times.stages());
+    if (!html) {
+      return Propagate(html.error(), options.report);
+    }
+    if (Status written = file->Write(*html); !written) {
+      return written;
+    }
   }
   out << (options.json ? FormatCompareJson(*report) : FormatCompareText(*report)) << std::flush;
   if (!out) {

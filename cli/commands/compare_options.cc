@@ -20,6 +20,11 @@ pipeline::OptionTable<CompareOptions> BuildTable() {
       "against the exact global-shutter picture of each instant as well.");
   add(pipeline::SwitchOption("json", &O::json), "Output",
       "Print one JSON object instead of a table.");
+  add(pipeline::TextOption("report", "FILE", &O::report), "Output",
+      "Also write an HTML page, all in one file, with pictures before and after, the camera path "
+      "and every figure.");
+  add(pipeline::SwitchOption("overwrite", &O::overwrite), "Output",
+      "Replace the report if it exists.");
   add(pipeline::IntegerOption("threads", "N", &O::threads, 0, 1024), "Running",
       "Threads to decode and measure with; 0 takes one for each processor.");
   return table;

@@ -15,8 +15,10 @@ struct CompareOptions {
   // What `simulate` wrote: its folder, or a file in it (truth.json, or the global-shutter clip
   // itself). Empty: no truth.
   std::string truth;
-  bool json = false;  // for programs instead of people
-  int threads = 0;    // to decode and measure with; 0 = one per core
+  std::string report;      // file for an HTML page; empty: none
+  bool overwrite = false;  // the report may replace a file
+  bool json = false;       // for programs instead of people
+  int threads = 0;         // to decode and measure with; 0 = one per core
 };
 
 // All options but the two clips, which are the command's positional arguments.

@@ -48,14 +48,54 @@ std::string Cell(const Figure& figure, int digits) {
   return figure ? fmt::format("{:>10.{}f}", *figure, digits) : fmt::format("{:>10}", "-");
 }
 
-std::string Row(const char* name, const char* unit, const Figure& input, const Figure& output,
-                int digits) {
-  return fmt::format("{:<24}{:<4}{}{}\n", name, unit, Cell(input, digits), Cell(output, digits));
+std::string Row(const CompareFigure& figure) {
+  return fmt::format("{:<24}{:<4}{}{}\n", figure.name, figure.unit,
+                     Cell(figure.input, figure.digits), Cell(figure.output, figure.digits));
 }
 
 Figure Percent(const Figure& share) { return share ? Figure(*share * kPercent) : std::nullopt; }
 
 }  // namespace
+
+std::vector<CompareFigure> CompareFigures(const CompareReport& report) {
+  const stabilizer::ClipMetrics& in = report.input.metrics;
+  const stabilizer::ClipMetrics& out = report.output.metrics;
+  const stabilizer::PairMetrics& pair = report.pair;
+  std::vector<CompareFigure> figures = {
+      {"wobble", "px", in.wobble, out.wobble, 3, Better::kLower,
+       "what moves against the rest of the picture"},
+      {"row wobble", "px", in.row_wobble, out.row_wobble, 3, Better::kLower,
+       "its part common to rows: rolling shutter"},
+      {"jitter", "px", in.jitter, out.jitter, 2, Better::kLower,
+       "change of the motion from frame to frame"},
+      {"shake", "px", in.shake, out.shake, 2, Better::kLower, "path less its mean over 0.25 s"},
+      {"stability, translation", "", in.stability_move, out.stability_move, 3, Better::kHigher,
+       "share of slow movement in the path, 1 = steady"},
+      {"stability, rotation", "", in.stability_turn, out.stability_turn, 3, Better::kHigher,
+       "the same of its rotation"},
+      {"ITF", "dB", in.itf_db, out.itf_db, 2, Better::kHigher, "PSNR between consecutive frames"}};
+  if (report.input.truth && report.output.truth) {
+    const stabilizer::TruthMetrics& in_truth = *report.input.truth;
+    const stabilizer::TruthMetrics& out_truth = *report.output.truth;
+    figures.insert(figures.end(),
+                   {{"camera residual", "px", in_truth.camera_residual, out_truth.camera_residual,
+                     3, Better::kLower, "distance from what a global shutter would have seen"},
+                    {"  its worst frame", "px", in_truth.worst_frame, out_truth.worst_frame, 3,
+                     Better::kLower, ""},
+                    {"bend", "px", in_truth.bend, out_truth.bend, 3, Better::kLower,
+                     "the same after the best homography"}});
+  }
+  figures.insert(
+      figures.end(),
+      {{"crop ratio", "", 1.0, pair.crop, 3, Better::kNeither, "share of a side that was kept"},
+       {"  its smallest", "", 1.0, pair.smallest_crop, 3, Better::kNeither, ""},
+       {"distortion value", "", 1.0, pair.distortion, 3, Better::kNeither,
+        "1 = no frame stretched or sheared"},
+       {"undefined pixels", "%", 0.0, Percent(pair.undefined), 3, Better::kNeither,
+        "without a source in the input"},
+       {"  in the worst frame", "%", 0.0, Percent(pair.worst_undefined), 3, Better::kNeither, ""}});
+  return figures;
+}
 
 std::string FormatCompareJson(const CompareReport& report) {
   const stabilizer::PairMetrics& pair = report.pair;
@@ -82,25 +122,9 @@ std::string FormatCompareText(const CompareReport& report) {
                   report.input.width, report.input.height, in.frames, report.output.path,
                   report.output.width, report.output.height, out.frames);
   text += fmt::format("{:<24}{:<4}{:>10}{:>10}\n", "", "", "in", "out");
-  text += Row("wobble", "px", in.wobble, out.wobble, 3);
-  text += Row("row wobble", "px", in.row_wobble, out.row_wobble, 3);
-  text += Row("jitter", "px", in.jitter, out.jitter, 2);
-  text += Row("shake", "px", in.shake, out.shake, 2);
-  text += Row("stability, translation", "", in.stability_move, out.stability_move, 3);
-  text += Row("stability, rotation", "", in.stability_turn, out.stability_turn, 3);
-  text += Row("ITF", "dB", in.itf_db, out.itf_db, 2);
-  if (report.input.truth && report.output.truth) {
-    const stabilizer::TruthMetrics& in_truth = *report.input.truth;
-    const stabilizer::TruthMetrics& out_truth = *report.output.truth;
-    text += Row("camera residual", "px", in_truth.camera_residual, out_truth.camera_residual, 3);
-    text += Row("  its worst frame", "px", in_truth.worst_frame, out_truth.worst_frame, 3);
-    text += Row("bend", "px", in_truth.bend, out_truth.bend, 3);
+  for (const CompareFigure& figure : CompareFigures(report)) {
+    text += Row(figure);
   }
-  text += Row("crop ratio", "", 1.0, pair.crop, 3);
-  text += Row("  its smallest", "", 1.0, pair.smallest_crop, 3);
-  text += Row("distortion value", "", 1.0, pair.distortion, 3);
-  text += Row("undefined pixels", "%", 0.0, Percent(pair.undefined), 3);
-  text += Row("  in the worst frame", "%", 0.0, Percent(pair.worst_undefined), 3);
   text += "\npx at 640 px width";
   if (pair.unaligned > 0) {
     text += fmt::format("; {} of {} frames could not be matched between the clips and are left out",

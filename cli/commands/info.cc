@@ -21,9 +21,14 @@ using Json = nlohmann::ordered_json;
 Result<std::string> Plan(const pipeline::StabilizeOptions& options, const media::VideoInfo& clip,
                          const pipeline::RsInputs& inputs, const Logger& logger) {
   if (pipeline::NeedsTracks(options, inputs)) {
+    const bool may_use_log =
+        options.rs == pipeline::RsChoice::kAuto || options.rs == pipeline::RsChoice::kGyro;
     return std::string(
-        "the gyro log would be brought into step with the picture and, if that can be trusted, "
-        "tell the motion inside each frame");
+        inputs.gyro && may_use_log
+            ? "the gyro log would be brought into step with the picture and, if that can be "
+              "trusted, tell the motion inside each frame"
+            : "the readout time, if not given, and the motion inside each frame would be found "
+              "from the clip's tracks");
   }
   pipeline::ClipGeometry geometry{clip.width, clip.height};
   const auto selection = pipeline::SelectRsSource(options, geometry, inputs, {}, logger);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "cli/output_names.h"
+#include "cli/pages/steady_report.h"
 #include "cli/passes.h"
 #include "stabilizer/analysis_file.h"
 
@@ -25,8 +26,13 @@ Status RunRender(const Invocation& invocation, const CommandContext& context) {
   if (!output) {
     return Propagate(output.error());
   }
-  return RenderClip(std::move(*clip), std::move(*output), invocation.stabilize, analysis_file,
-                    {1, 1}, context);
+  auto report =
+      OpenSteadyReport(invocation.encode, {invocation.input, output->path, analysis_file});
+  if (!report) {
+    return Propagate(report.error());
+  }
+  return RenderWithReport(std::move(*clip), std::move(*output), invocation.encode,
+                          invocation.stabilize, analysis_file, {1, 1}, std::move(*report), context);
 }
 
 }  // namespace rsstab::cli

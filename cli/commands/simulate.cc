@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/commands/simulate_rs_real.h"
 #include "cli/media/video_writer.h"
 #include "igf/base/parallel_for.h"
 #include "igf/base/seeded_random.h"
@@ -309,6 +310,9 @@ Result<Simulation> PrepareSimulation(const SimulateOptions& options, const Logge
 
 Status RunSimulate(const SimulateOptions& options, const Logger& logger,
                    const SimulateProgress& progress) {
+  if (options.rs_real) {
+    return RunSimulateRsReal(options, logger, progress);
+  }
   const std::filesystem::path folder =
       options.output.empty() ? std::filesystem::path(".") : std::filesystem::path(options.output);
   const auto path_of = [&](const char* name) { return (folder / name).string(); };

@@ -36,11 +36,11 @@ struct Simulation {
 // Called after each frame (a rolling-shutter picture and its twin); false stops.
 using SimulateProgress = std::function<bool(std::int64_t frames_done, std::int64_t frames)>;
 
-// Writes rs.mp4 (rolling shutter), gs.mp4 (its global-shutter twin, each frame at the instant of
-// the middle row), gyro.csv, camera.json and truth.json into options.output, which is made if it is
-// missing. A file gets its name when it is complete, the clips first.
-// Errors: those of PrepareSimulation; kInvalidArgument when a file exists and overwrite is off;
-// kIo; kCancelled.
+// With options.rs_real what RunSimulateRsReal does; else writes rs.mp4 (rolling shutter), gs.mp4
+// (its global-shutter twin, each frame at the instant of the middle row), gyro.csv, camera.json and
+// truth.json into options.output, which is made if it is missing. A file gets its name when it is
+// complete, the clips first. Errors: those of PrepareSimulation; kInvalidArgument when a file
+// exists and overwrite is off; kIo; kCancelled.
 [[nodiscard]] Status RunSimulate(const SimulateOptions& options, const Logger& logger,
                                  const SimulateProgress& progress = {});
 

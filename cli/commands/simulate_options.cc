@@ -80,6 +80,22 @@ OptionTable<Options> BuildTable() {
   add(RealOption<Options>("gyro-bias", "RAD/S", &Options::gyro_bias_rad_s, {0.0, 10.0}),
       "Size of a constant error of the gyro, in a direction drawn from the seed.");
 
+  group = "Labelled pictures";
+  add(SwitchOption<Options>("rs-real", &Options::rs_real),
+      "Write single pictures instead, with truth, motion field and gyro log, in the layout of the "
+      "data set RS-Real: for `evaluate --dataset rs-real:FOLDER` and for training. Each photograph "
+      "is taken with a weak, a medium and a strong motion; focal length and readout are drawn "
+      "unless given.");
+  add(TextOption<Options>("photos", "FOLDER", &Options::photos),
+      "--rs-real: the photographs; painted streets without it.");
+  add(IntegerOption<Options>("samples", "N", &Options::samples, 1, 1'000'000),
+      "--rs-real: how many pictures.");
+  add(IntegerOption<Options>("frames", "N", &Options::frames, 1, 1000),
+      "--rs-real: consecutive frames of each photograph and motion, as a sequence.");
+  add(RealOption<Options>("train-share", "N", &Options::train_share, {0.0, 1.0}),
+      "--rs-real: how much of it becomes the train split; the rest is the test split.");
+  add(TextOption<Options>("size", "WxH", &Options::size), "--rs-real: of the pictures.");
+
   group = "Output";
   add(RealOption<Options>("crf", "N", &Options::crf, {0.0, 51.0}),
       "Quality of the H.264 clips; 0 is lossless.");

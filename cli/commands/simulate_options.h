@@ -13,8 +13,14 @@ namespace rsstab::cli {
 
 // What `rs-stabilize simulate` is told. Defaults are the member initialisers.
 struct SimulateOptions {
-  std::string output;  // folder for rs.mp4, gs.mp4, gyro.csv, camera.json, truth.json
-  std::string image;   // still picture that becomes the scene; empty: a painted street
+  std::string output;            // folder for rs.mp4, gs.mp4, gyro.csv, camera.json, truth.json
+  bool rs_real = false;          // labelled pictures in RS-Real's layout instead of a clip
+  std::string photos;            // rs-real: folder of photographs; empty: painted streets
+  int samples = 30;              // rs-real: how many pictures
+  int frames = 1;                // rs-real: of each clip
+  double train_share = 0.0;      // rs-real: of the clips
+  std::string size = "800x600";  // rs-real: of the pictures
+  std::string image;             // still picture that becomes the scene; empty: a painted street
   igf::MotionPreset motion = igf::MotionPreset::kHandheld;
   std::string motion_gyro;  // gyro log whose motion is used instead of a preset
   std::int64_t seed = 1;

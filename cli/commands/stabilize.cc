@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "cli/output_names.h"
+#include "cli/pages/steady_report.h"
 #include "cli/passes.h"
 
 namespace rsstab::cli {
@@ -31,12 +32,17 @@ Status RunStabilize(const Invocation& invocation, const CommandContext& context)
     return Propagate(output.error());
   }
 
+  auto report = OpenSteadyReport(invocation.encode, {invocation.input, output->path});
+  if (!report) {
+    return Propagate(report.error());
+  }
+
   const auto analysis = AnalyzeClip(std::move(*clip), options, analysis_file, {1, 2}, context);
   if (!analysis) {
     return Propagate(analysis.error());
   }
-  return RenderClip(std::move(*second_look), std::move(*output), options, analysis_file, {2, 2},
-                    context);
+  return RenderWithReport(std::move(*second_look), std::move(*output), invocation.encode, options,
+                          analysis_file, {2, 2}, std::move(*report), context);
 }
 
 }  // namespace rsstab::cli

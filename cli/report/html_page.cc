@@ -46,6 +46,13 @@ void HtmlPage::BeginSection(std::string_view heading, std::string_view explanati
   }
 }
 
+void HtmlPage::AddHeading(std::string_view heading, std::string_view explanation) {
+  body_ += fmt::format("<h3>{}</h3>\n", Escape(heading));
+  if (!explanation.empty()) {
+    AddText(explanation);
+  }
+}
+
 void HtmlPage::AddText(std::string_view paragraph) {
   body_ += "<p>" + Escape(paragraph) + "</p>\n";
 }
@@ -76,9 +83,13 @@ void HtmlPage::Add(const Table& table) {
   if (!table.caption.empty()) {
     body_ += "<caption>" + Escape(table.caption) + "</caption>";
   }
+  const auto css_class = [&table](std::size_t column) {
+    return table.has_notes && column + 1 == table.headings.size() ? "note" : "n";
+  };
   body_ += "<thead><tr>";
   for (std::size_t i = 0; i < table.headings.size(); ++i) {
-    body_ += fmt::format("<th scope=\"col\"{}>{}</th>", i == 0 ? "" : " class=\"n\"",
+    body_ += fmt::format("<th scope=\"col\"{}>{}</th>",
+                         i == 0 ? "" : fmt::format(" class=\"{}\"", css_class(i)),
                          Escape(table.headings[i]));
   }
   body_ += "</tr></thead><tbody>\n";
@@ -86,8 +97,8 @@ void HtmlPage::Add(const Table& table) {
     body_ += "<tr>";
     for (std::size_t i = 0; i < row.size(); ++i) {
       body_ += i == 0 ? fmt::format("<th scope=\"row\">{}</th>", Escape(row[i].text))
-                      : fmt::format("<td class=\"n{}\">{}</td>", row[i].best ? " best" : "",
-                                    Escape(row[i].text));
+                      : fmt::format("<td class=\"{}{}\">{}</td>", css_class(i),
+                                    row[i].best ? " best" : "", Escape(row[i].text));
     }
     body_ += "</tr>\n";
   }
@@ -125,8 +136,12 @@ void HtmlPage::Add(std::span<const BeforeAfter> pictures) {
   body_ += "</div>\n";
 }
 
-void HtmlPage::Add(std::span<const Panel> panels) {
-  body_ += "<div class=\"panels\">\n";
+void HtmlPage::Add(std::span<const Panel> panels) { AddPanels(panels, "panels"); }
+
+void HtmlPage::AddPairs(std::span<const Panel> panels) { AddPanels(panels, "panels pairs"); }
+
+void HtmlPage::AddPanels(std::span<const Panel> panels, std::string_view css_class) {
+  body_ += fmt::format("<div class=\"{}\">\n", css_class);
   for (const Panel& panel : panels) {
     body_ += "<figure>" +
              Image(panel.uri, panel.title,
@@ -140,7 +155,8 @@ void HtmlPage::Add(std::span<const ColorKey> keys) {
   body_ += "<div class=\"keys\">\n";
   for (const ColorKey& key : keys) {
     body_ += fmt::format(
-        "<div><span>{}</span>{}<span>{}</span></div>\n", Escape(key.low),
+        "<div>{}{}<span>{}</span></div>\n",
+        key.low.empty() ? "" : "<span>" + Escape(key.low) + "</span>",
         Image(key.uri, "key of the colours", key.is_wheel ? " class=\"wheel\"" : " class=\"ramp\""),
         Escape(key.high));
   }
@@ -155,7 +171,7 @@ void HtmlPage::Add(std::span<const Share> shares) {
   body_ += "<div class=\"bars\">\n";
   for (const Share& share : shares) {
     const double percent = largest > 0.0 ? 100.0 * share.value / largest : 0.0;
-    body_ += fmt::format("<span>{}</span><b style=\"width:{:.1f}%\"></b><em>{}</em>\n",
+    body_ += fmt::format("<div><span>{}</span><b style=\"width:{:.1f}%\"></b><em>{}</em></div>\n",
                          Escape(share.label), percent, Escape(share.text));
   }
   body_ += "</div>\n";

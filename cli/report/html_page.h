@@ -31,6 +31,7 @@ struct Table {
   std::string caption;                // may be empty
   std::vector<std::string> headings;  // one for each column; the first column names the row
   std::vector<std::vector<TableCell>> rows;
+  bool has_notes = false;  // the last column is a remark, left out on a narrow screen
 };
 
 struct Fact {
@@ -87,8 +88,12 @@ class HtmlPage {
   void Add(std::span<const LineChart> charts);
   void Add(std::span<const BeforeAfter> pictures);
   void Add(std::span<const Panel> panels);
+  // The same, two and two beside each other, also on a phone.
+  void AddPairs(std::span<const Panel> panels);
   void Add(std::span<const ColorKey> keys);
   void Add(std::span<const Share> shares);
+  // A smaller heading within the section.
+  void AddHeading(std::string_view heading, std::string_view explanation = {});
   void AddText(std::string_view paragraph);
   void AddCode(std::string_view heading, std::string_view text);
 
@@ -96,6 +101,8 @@ class HtmlPage {
   [[nodiscard]] std::string Finish(std::string_view footer);
 
  private:
+  void AddPanels(std::span<const Panel> panels, std::string_view css_class);
+
   std::string title_;
   std::string body_;
   int charts_ = 0;

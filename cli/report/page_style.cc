@@ -15,15 +15,17 @@ h1{margin:2px 0 0;font-size:26px;line-height:1.2;font-weight:650;overflow-wrap:a
 .sub{margin:6px 0 0;color:var(--faint)}
 section{margin-top:40px}
 h2{margin:0;font-size:18px;font-weight:650;padding-bottom:6px;border-bottom:1px solid var(--grid)}
+h3{margin:26px 0 0;font-size:15px;font-weight:600}
 section>p{margin:10px 0 0;max-width:70ch;color:var(--faint)}
-.big{display:grid;grid-template-columns:repeat(auto-fit,minmax(150px,1fr));gap:20px 24px;
+.big{display:grid;grid-template-columns:repeat(auto-fill,minmax(176px,1fr));gap:20px 14px;
 margin:22px 0 0}
-.big div{border-left:3px solid var(--line-2);padding-left:12px}
+.big div{border-left:3px solid var(--line-2);padding-left:10px}
 .big dt{color:var(--faint);font-size:13px}
-.big dd{margin:0;font-size:22px;font-weight:650;line-height:1.3;font-variant-numeric:tabular-nums;
+.big dd{margin:0;font-size:20px;font-weight:650;line-height:1.3;font-variant-numeric:tabular-nums;
 white-space:nowrap}
 .big dd small{font-size:14px;font-weight:400;color:var(--faint)}
 .big .was{font-weight:400;color:var(--line-1)}
+@media(max-width:420px){.big{grid-template-columns:repeat(2,minmax(0,1fr))}.big dd{font-size:17px}}
 .wide{overflow-x:auto;margin-top:14px}
 table{border-collapse:collapse;font-variant-numeric:tabular-nums;min-width:min(100%,420px)}
 caption{text-align:left;font-weight:600;padding-bottom:6px}
@@ -32,11 +34,13 @@ vertical-align:baseline}
 thead th{color:var(--faint);font-weight:500;font-size:13px;white-space:nowrap;
 border-bottom-color:var(--faint)}
 tbody th{font-weight:400}
+.note{color:var(--faint);padding-left:8px}
+@media(max-width:640px){.note{display:none}}
 .n{text-align:right;white-space:nowrap;padding-left:8px}
-td.best{font-weight:650}td.dim,td .dim{color:var(--faint)}td.path{overflow-wrap:anywhere}
+td.best{font-weight:650}
 .facts{display:grid;grid-template-columns:minmax(110px,auto) 1fr;gap:5px 20px;margin:14px 0 0}
 .facts dt{color:var(--faint)}.facts dd{margin:0;overflow-wrap:anywhere}
-.charts{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,330px),1fr));
+.charts{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,330px),1fr));
 gap:26px 34px;margin-top:18px}
 .charts .chart{width:100%}
 .slides{display:grid;grid-template-columns:repeat(2,minmax(0,1fr));gap:22px;margin-top:16px}
@@ -61,7 +65,8 @@ color:#fff;font-size:12px;pointer-events:none}
 pointer-events:none}
 .stage input:focus-visible~i:after{outline:3px solid var(--line-2)}
 .panels{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,220px),1fr));
-gap:18px 20px;margin-top:16px;align-items:end}
+gap:18px 20px;margin-top:22px}
+.pairs{grid-template-columns:repeat(2,minmax(0,1fr))}
 .panels img{display:block;width:100%;height:auto;border-radius:3px}
 .keys{display:flex;flex-wrap:wrap;gap:14px 40px;align-items:center;margin-top:14px;font-size:13px;
 color:var(--faint)}
@@ -70,6 +75,9 @@ color:var(--faint)}
 .keys .ramp{width:min(220px,40vw);height:12px;border-radius:2px}
 .bars{display:grid;grid-template-columns:minmax(90px,auto) 1fr auto;gap:5px 14px;margin:14px 0 0;
 align-items:center;font-variant-numeric:tabular-nums}
+.bars>div{display:contents}
+@media(max-width:640px){.bars{display:block}.bars>div{display:grid;gap:2px 14px;
+grid-template:"name time" "bar bar"/1fr auto;margin-bottom:8px}.bars b{grid-area:bar}}
 .bars b{display:block;height:11px;background:var(--line-2);opacity:.75;border-radius:2px;
 min-width:1px}
 .bars em{font-style:normal;text-align:right;white-space:nowrap;color:var(--faint)}

@@ -4,11 +4,13 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 
 #include "igf/base/frame.h"
 #include "igf/base/motion_field.h"
+#include "igf/base/point_tracks.h"
 #include "igf/base/result.h"
 
 namespace rsstab {
@@ -36,6 +38,20 @@ class RsMotionSource {
 
   // True when EstimateMotion looks at the picture (pass 1 then keeps it at hand).
   [[nodiscard]] virtual bool NeedsImage() const = 0;
+
+  // Sources that learn from what moves between frames are shown every frame in order, with its
+  // tracks from the one before (empty for the first and after a cut), and may answer for a frame
+  // only once they have seen some beyond it. FinishObserving: no more frames will come.
+  virtual void Observe(const PointTracks& tracks, double time_s) {
+    (void)tracks;
+    (void)time_s;
+  }
+  virtual void FinishObserving() {}
+  // EstimateMotion may be asked for frames below this number. A source that looks at pictures
+  // answers at once.
+  [[nodiscard]] virtual std::int64_t NumAnswerable() const {
+    return std::numeric_limits<std::int64_t>::max();
+  }
 
   // Motion of one frame. kUntrustworthy when this frame cannot be told (a gap in the log): the
   // caller then leaves the frame as it is. Any order of frames; not thread safe.

@@ -206,6 +206,13 @@ Status TruthMeter::Push(const FrameView& frame, const FrameView& twin) {
   return {};
 }
 
+std::optional<double> TruthMeter::LastResidual() const {
+  if (frame_residual_.empty() || std::isnan(frame_residual_.back())) {
+    return std::nullopt;
+  }
+  return frame_residual_.back();
+}
+
 TruthMetrics TruthMeter::Measure() const {
   TruthMetrics result;
   result.frames = frames_;

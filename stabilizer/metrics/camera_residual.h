@@ -63,6 +63,9 @@ class TruthMeter {
 
   [[nodiscard]] TruthMetrics Measure() const;
 
+  // Camera residual of the last frame; empty where nothing agreed.
+  [[nodiscard]] std::optional<double> LastResidual() const;
+
  private:
   explicit TruthMeter(Camera camera) : camera_(std::move(camera)) {}
 

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "stabilizer/clip_calibration.h"
 #include "stabilizer/feature_tracks.h"
 #include "stabilizer/luma_proxy.h"
 #include "stabilizer/pipeline/track_spool.h"
 #include "stabilizer/pipeline/version.h"
+#include "stabilizer/track_cells.h"
 
 namespace rsstab::pipeline {
 namespace {
@@ -43,6 +45,8 @@ struct Analyzer::Impl {
   std::unique_ptr<MotionStage> stage;
   std::unique_ptr<TrackSpool> spool;  // only while the source waits for the tracks
   std::vector<PointTracks> sync_tracks;
+  std::optional<stabilizer::ClipCalibrator> calibrator;
+  std::optional<Camera> lens;  // taken out of the tracks before they calibrate
   std::int64_t num_frames = 0;
   // The clip's clock: first and last frame in ticks and in seconds.
   std::int64_t first_pts = 0;
@@ -129,6 +133,8 @@ Result<std::unique_ptr<Analyzer>> Analyzer::Create(const StabilizeOptions& optio
       return Propagate(std::move(spool.error()));
     }
     impl->spool = std::move(*spool);
+    impl->calibrator.emplace(CalibrationOptions(options, clip, impl->inputs));
+    impl->lens = KnownLens(options, clip, impl->inputs);
   } else {
     Status ok = impl->StartStage(SelectRsSource(options, clip, impl->inputs, {}, impl->logger));
     if (!ok) {
@@ -172,6 +178,7 @@ Status Analyzer::PushFrame(const FrameView& frame, std::int64_t pts, double time
   if (s.num_frames > 1 && s.num_frames <= kMaxSyncFrames) {
     s.sync_tracks.push_back(Thin(observation.tracks));
   }
+  s.calibrator->Push(stabilizer::SummarizeTracks(observation.tracks, s.lens ? &*s.lens : nullptr));
   return s.spool->Append(observation);
 }
 
@@ -181,7 +188,8 @@ Result<stabilizer::ClipAnalysis> Analyzer::Finish(const std::function<bool()>& c
     return Fail(ErrorCode::kCorruptData, "the clip has no frame that can be decoded");
   }
   if (!s.stage) {
-    Status ok = s.StartStage(SelectRsSource(s.options, s.clip, s.inputs, s.sync_tracks, s.logger));
+    const ClipEvidence evidence{s.sync_tracks, s.calibrator->Calibrate()};
+    Status ok = s.StartStage(SelectRsSource(s.options, s.clip, s.inputs, evidence, s.logger));
     if (ok) {
       ok = s.Replay(cancelled);
     }

@@ -55,7 +55,7 @@ stabilizer::PathSmootherOptions SmootherOptions(const StabilizeOptions& options,
   smoother.focal_ratio =
       selection.camera ? selection.camera->fx / selection.camera->width : kDefaultFocalRatio;
   smoother.adaptive_zoom = options.zoom == ZoomMode::kAdaptive && !options.tripod;
-  smoother.rotation_known = selection.source != nullptr && selection.source->Name() == "gyro";
+  smoother.rotation_known = selection.rotation_is_known;
   smoother.mesh_columns = options.mesh_columns;
   smoother.mesh_rows = options.mesh_rows;
   return smoother;
@@ -118,11 +118,14 @@ struct MotionStage::Impl {
   Lookahead lookahead;
   AnyZoomPlanner zoom;
 
-  std::int64_t num_frames = 0;
+  std::int64_t num_frames = 0;    // decided
+  std::int64_t num_observed = 0;  // shown to the source
+  stabilizer::LumaFingerprint observed_fingerprint{};
   std::int64_t num_without_rs = 0;  // frames that the RS source could not tell
   MotionField previous_field;
   double previous_time_s = 0.0;
   stabilizer::LumaFingerprint previous_fingerprint{};
+  std::deque<FrameObservation> waiting_for_source;
   std::deque<FrameAnalysis> waiting_for_path;
   std::deque<FrameAnalysis> waiting_for_zoom;
   std::vector<FrameAnalysis> ready;
@@ -159,7 +162,7 @@ struct MotionStage::Impl {
 
   // What the RS source knows of the turn between two frames, normalised; empty when nothing.
   [[nodiscard]] std::optional<Eigen::Matrix3d> PredictedMotion(double from_s, double to_s) const {
-    if (!selection->source || !selection->camera) {
+    if (!selection->rotation_is_known || !selection->camera) {
       return std::nullopt;
     }
     const auto from = selection->source->CameraFromWorld(from_s);
@@ -231,6 +234,42 @@ struct MotionStage::Impl {
     return motion;
   }
 
+  // A cut as far as it can be told before rolling shutter is taken out.
+  [[nodiscard]] bool BeginsScene(const FrameObservation& o) const {
+    return stabilizer::IsSceneCut(
+        {stabilizer::FingerprintDistance(o.fingerprint, observed_fingerprint), o.attempted_points,
+         static_cast<int>(o.tracks.matches.size())});
+  }
+
+  Status Advance(const FrameObservation& observation, const FrameView* image) {
+    FrameAnalysis frame;
+    frame.pts = observation.pts;
+    frame.fingerprint = observation.fingerprint;
+    frame.rs_field = EstimateField(observation, image);
+    const stabilizer::FrameMotion motion = EstimateMotion(observation, frame.rs_field);
+    previous_field = frame.rs_field;
+    previous_time_s = observation.time_s;
+    previous_fingerprint = observation.fingerprint;
+    ++num_frames;
+    waiting_for_path.push_back(std::move(frame));
+    if (Status ok = smoother->Push(motion); !ok) {
+      return ok;
+    }
+    TakeUpdates();
+    return {};
+  }
+
+  Status AdvanceAnswerable() {
+    while (!waiting_for_source.empty() && num_frames < selection->source->NumAnswerable()) {
+      const FrameObservation observation = std::move(waiting_for_source.front());
+      waiting_for_source.pop_front();
+      if (Status ok = Advance(observation, nullptr); !ok) {
+        return ok;
+      }
+    }
+    return {};
+  }
+
   void TakeUpdates() {
     for (stabilizer::PathUpdate& update : smoother->TakeReady()) {
       FrameAnalysis frame = std::move(waiting_for_path.front());
@@ -297,25 +336,28 @@ Status MotionStage::Update(const StabilizeOptions& options) {
 
 Status MotionStage::Push(const FrameObservation& observation, const FrameView* image) {
   Impl& s = *impl_;
-  FrameAnalysis frame;
-  frame.pts = observation.pts;
-  frame.fingerprint = observation.fingerprint;
-  frame.rs_field = s.EstimateField(observation, image);
-  const stabilizer::FrameMotion motion = s.EstimateMotion(observation, frame.rs_field);
-  s.previous_field = frame.rs_field;
-  s.previous_time_s = observation.time_s;
-  s.previous_fingerprint = observation.fingerprint;
-  ++s.num_frames;
-  s.waiting_for_path.push_back(std::move(frame));
-  if (Status ok = s.smoother->Push(motion); !ok) {
-    return ok;
+  if (!s.selection->source) {
+    return s.Advance(observation, image);
   }
-  s.TakeUpdates();
-  return {};
+  const bool begins = s.num_observed > 0 && s.BeginsScene(observation);
+  s.selection->source->Observe(begins ? PointTracks{} : observation.tracks, observation.time_s);
+  s.observed_fingerprint = observation.fingerprint;
+  ++s.num_observed;
+  if (s.waiting_for_source.empty() && s.num_frames < s.selection->source->NumAnswerable()) {
+    return s.Advance(observation, image);
+  }
+  s.waiting_for_source.push_back(observation);
+  return s.AdvanceAnswerable();
 }
 
 Status MotionStage::Finish() {
   Impl& s = *impl_;
+  if (s.selection->source) {
+    s.selection->source->FinishObserving();
+    if (Status ok = s.AdvanceAnswerable(); !ok) {
+      return ok;
+    }
+  }
   if (Status ok = s.smoother->Finish(); !ok) {
     return ok;
   }

@@ -11,6 +11,7 @@
 #include "igf/base/result.h"
 #include "igf/base/rs_motion_source.h"
 #include "stabilizer/analysis_file.h"
+#include "stabilizer/clip_calibration.h"
 #include "stabilizer/pipeline/frame_observation.h"
 #include "stabilizer/pipeline/stabilize_options.h"
 
@@ -28,7 +29,11 @@ struct RsSelection {
   std::unique_ptr<RsMotionSource> source;  // null: rolling shutter is left alone
   std::optional<Camera> camera;            // full size; set when anything is known about it
   double readout_s = 0.0;
+  // The source's orientation is all that moves the picture (a gyro log, or tracks without
+  // parallax): camera paths are then rotations.
+  bool rotation_is_known = false;
   std::optional<double> gyro_offset_s;
+  std::optional<stabilizer::ClipCalibration> calibration;  // what the tracks told, if asked
   std::string reason;  // one sentence for the log and the analysis file
 };
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stabilizer/pipeline/rs_source_selection.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string_view>
+#include <thread>
 #include <utility>
 
 #include "igf/gyro_integrator.h"
@@ -10,12 +13,16 @@
 #include "igf/gyro_video_sync.h"
 #include "rsdiff/diffusion_motion_source.h"
 #include "rsdiff/model_path.h"
+#include "stabilizer/pipeline/fused_motion_source.h"
 
 namespace rsstab::pipeline {
 namespace {
 
 // Where nobody knows the focal length: 64 degrees across.
 constexpr double kDefaultFocalRatio = 0.8;
+// Tracks that a rotation explains up to this, RMS at the picture's edge and at 640 px width, come
+// from a camera that only turns; walking past things moves them by more.
+constexpr double kMaxParallax_px = 0.1;
 // Telemetry tracks lag or lead their video by exposure, readout and packet times.
 constexpr double kSharedClockSearchS = 0.25;
 
@@ -142,6 +149,7 @@ Result<RsSelection> SelectGyro(const StabilizeOptions& options, CameraKnowledge 
   selection.source = std::make_unique<igf::GyroMotionSource>(std::move(*source));
   selection.camera = known.camera;
   selection.readout_s = readout_s;
+  selection.rotation_is_known = true;
   selection.gyro_offset_s = sync->offset_s;
   selection.reason = fmt::format(
       "gyro log {} ({:.0f} Hz), offset {:.1f} ms, readout {:.1f} ms ({}), focal length {:.0f} px "
@@ -191,15 +199,115 @@ Result<RsSelection> SelectDiffusion(const StabilizeOptions& options, const Camer
   return selection;
 }
 
+std::string_view SourceName(RsChoice choice) {
+  return choice == RsChoice::kTracks ? "tracks" : "fused";
+}
+
+// What the calibration says about the shutter, for people.
+std::string DescribeShutter(const stabilizer::ClipCalibration& calibration) {
+  const auto& readout = calibration.readout_s;
+  switch (calibration.verdict) {
+    case stabilizer::ShutterVerdict::kRolling:
+      return fmt::format("readout {:.1f} +- {:.1f} ms (estimated)", readout.value * 1e3,
+                         readout.sigma * 1e3);
+    case stabilizer::ShutterVerdict::kGlobal:
+      return fmt::format("the clip shows no rolling shutter (readout 0 +- {:.1f} ms)",
+                         readout.sigma * 1e3);
+    case stabilizer::ShutterVerdict::kCannotBeTold:
+      return "the clip does not tell its readout time (too little changes of motion, or too little "
+             "texture): give --readout if you know it";
+    case stabilizer::ShutterVerdict::kGiven:
+      break;
+  }
+  return fmt::format("readout {:.1f} ms (given)", readout.value * 1e3);
+}
+
+// One rotation spline over the clip.
+Result<RsSelection> SelectFused(const StabilizeOptions& options, const ClipGeometry& clip,
+                                CameraKnowledge known,
+                                const stabilizer::ClipCalibration& calibration) {
+  const double readout_s = calibration.readout_s.value;
+  const bool focal_is_found = !known.focal_is_known && calibration.focal.trusted;
+  if (focal_is_found) {
+    const double aspect = known.camera.fy / known.camera.fx;
+    known.camera.fx = calibration.focal.value * clip.width;
+    known.camera.fy = known.camera.fx * aspect;
+    known.focal_is_known = true;
+  }
+  known.camera.readout_s = readout_s;
+  const std::string shutter = DescribeShutter(calibration);
+  const bool only_turns = calibration.num_windows > 0 && calibration.parallax_px < kMaxParallax_px;
+  if (readout_s == 0.0 && !only_turns) {
+    RsSelection selection = WithoutSource(known, "left alone: " + shutter);
+    selection.calibration = calibration;
+    return selection;
+  }
+  const stabilizer::RsMotionModel model = {.frame_interval_s = 1.0 / clip.frames_per_second,
+                                           .readout_s = readout_s,
+                                           .focal = known.camera.fx / known.camera.width,
+                                           .jerk_weight = calibration.jerk_weight};
+  auto source = FusedMotionSource::Create(std::string(SourceName(options.rs)), known.camera,
+                                          known.lens_is_known, model);
+  if (!source) {
+    return Propagate(std::move(source.error()));
+  }
+  const std::string camera = fmt::format("focal length {:.0f} px ({})", known.camera.fx,
+                                         focal_is_found         ? "estimated"
+                                         : known.focal_is_known ? "given"
+                                                                : "assumed");
+  RsSelection selection = WithoutSource(
+      known, readout_s == 0.0
+                 ? fmt::format("left alone: {}; the camera only turns, {}", shutter, camera)
+                 : fmt::format("one camera rotation from the tracks, {}, {}", shutter, camera));
+  selection.camera = known.camera;
+  selection.source = std::move(*source);
+  selection.readout_s = readout_s;
+  selection.rotation_is_known = only_turns;
+  selection.calibration = calibration;
+  return selection;
+}
+
 }  // namespace
 
+stabilizer::ClipCalibrationOptions CalibrationOptions(const StabilizeOptions& options,
+                                                      const ClipGeometry& clip,
+                                                      const RsInputs& inputs) {
+  const CameraKnowledge known = WhatIsKnown(options, clip, inputs);
+  stabilizer::ClipCalibrationOptions calibration;
+  calibration.frame_interval_s = 1.0 / clip.frames_per_second;
+  calibration.readout_s = known.camera.readout_s;
+  if (known.focal_is_known) {
+    calibration.focal = known.camera.fx / known.camera.width;
+  }
+  calibration.num_threads =
+      options.num_threads > 0 ? options.num_threads
+                              : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return calibration;
+}
+
+std::optional<Camera> KnownLens(const StabilizeOptions& options, const ClipGeometry& clip,
+                                const RsInputs& inputs) {
+  const CameraKnowledge known = WhatIsKnown(options, clip, inputs);
+  return known.lens_is_known ? std::optional<Camera>(known.camera) : std::nullopt;
+}
+
 bool NeedsTracks(const StabilizeOptions& options, const RsInputs& inputs) {
-  return (options.rs == RsChoice::kAuto || options.rs == RsChoice::kGyro) &&
-         inputs.gyro.has_value();
+  switch (options.rs) {
+    case RsChoice::kAuto:
+    case RsChoice::kFused:
+    case RsChoice::kTracks:
+      return true;
+    case RsChoice::kGyro:
+      return inputs.gyro.has_value();
+    case RsChoice::kDiffusion:
+    case RsChoice::kOff:
+      break;
+  }
+  return false;
 }
 
 Result<RsSelection> SelectRsSource(const StabilizeOptions& options, const ClipGeometry& clip,
-                                   const RsInputs& inputs, std::span<const PointTracks> tracks,
+                                   const RsInputs& inputs, const ClipEvidence& evidence,
                                    const Logger& logger) {
   CameraKnowledge known = WhatIsKnown(options, clip, inputs);
   if (Status ok = known.camera.Validate(); !ok) {
@@ -211,20 +319,22 @@ Result<RsSelection> SelectRsSource(const StabilizeOptions& options, const ClipGe
   if (options.rs == RsChoice::kDiffusion) {
     return SelectDiffusion(options, known);
   }
-  if (!inputs.gyro) {
-    if (options.rs == RsChoice::kGyro) {
-      return Fail(
-          ErrorCode::kNotFound,
-          "--rs gyro needs a gyro log, and the clip carries none: name one with --gyro FILE");
+  const bool may_use_gyro = options.rs == RsChoice::kAuto || options.rs == RsChoice::kGyro;
+  if (may_use_gyro && inputs.gyro) {
+    auto selection = SelectGyro(options, known, inputs, evidence.tracks);
+    if (selection || options.rs == RsChoice::kGyro) {
+      return selection;
     }
-    return WithoutSource(known, "left alone: there is no gyro log");
-  }
-  auto selection = SelectGyro(options, known, inputs, tracks);
-  if (!selection && options.rs == RsChoice::kAuto) {
     logger->warn("the gyro log is not used: {}", selection.error().message);
-    return WithoutSource(known, "left alone: the gyro log could not be trusted");
   }
-  return selection;
+  if (options.rs == RsChoice::kGyro) {
+    return Fail(ErrorCode::kNotFound,
+                "--rs gyro needs a gyro log, and the clip carries none: name one with --gyro FILE");
+  }
+  if (!evidence.calibration) {
+    return WithoutSource(known, "left alone: there is no gyro log, and the clip is not known yet");
+  }
+  return SelectFused(options, clip, known, *evidence.calibration);
 }
 
 }  // namespace rsstab::pipeline

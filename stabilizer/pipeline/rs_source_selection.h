@@ -11,6 +11,7 @@
 #include "igf/base/point_tracks.h"
 #include "igf/base/result.h"
 #include "igf/gyro_log.h"
+#include "stabilizer/clip_calibration.h"
 #include "stabilizer/pipeline/motion_stage.h"
 #include "stabilizer/pipeline/stabilize_options.h"
 
@@ -26,17 +27,33 @@ struct RsInputs {
   std::optional<double> readout_s;  // from the telemetry, when it says so
 };
 
-// True when the choice can only be made once the tracks of the clip are known (a gyro log must be
-// brought into step with the picture first).
+// What the pictures of the clip told, once they were all seen.
+struct ClipEvidence {
+  std::span<const PointTracks> tracks;  // of consecutive frames; may be thinned out
+  std::optional<stabilizer::ClipCalibration> calibration;
+};
+
+// True when the choice can only be made once the clip was seen (a gyro log must be brought into
+// step with the picture, the readout time must be found).
 [[nodiscard]] bool NeedsTracks(const StabilizeOptions& options, const RsInputs& inputs);
 
-// Chooses the rolling-shutter source, and says why. `tracks`: of consecutive frames, needed when
-// NeedsTracks(); may be thinned out. With kAuto an untrustworthy gyro means no correction and a
-// warning; with kGyro it is an error: kNotFound without a log, kUntrustworthy when it does not fit.
-// With kDiffusion: the errors of rsdiff::FindModel and rsdiff::SingleImageEstimator::Load.
+// What the clip's calibration has to find out, from what is known already.
+[[nodiscard]] stabilizer::ClipCalibrationOptions CalibrationOptions(const StabilizeOptions& options,
+                                                                    const ClipGeometry& clip,
+                                                                    const RsInputs& inputs);
+
+// The lens to take out of the tracks; empty when none is known.
+[[nodiscard]] std::optional<Camera> KnownLens(const StabilizeOptions& options,
+                                              const ClipGeometry& clip, const RsInputs& inputs);
+
+// Chooses the rolling-shutter source, and says why. `evidence` is needed when NeedsTracks();
+// without a calibration the tracks' own motion is not used. With kAuto an untrustworthy gyro means
+// a warning and that the tracks are asked; with kGyro it is an error: kNotFound without a log,
+// kUntrustworthy when it does not fit. With kDiffusion: the errors of rsdiff::FindModel and
+// rsdiff::SingleImageEstimator::Load.
 [[nodiscard]] Result<RsSelection> SelectRsSource(const StabilizeOptions& options,
                                                  const ClipGeometry& clip, const RsInputs& inputs,
-                                                 std::span<const PointTracks> tracks,
+                                                 const ClipEvidence& evidence,
                                                  const Logger& logger);
 
 }  // namespace rsstab::pipeline

@@ -99,13 +99,17 @@ OptionTable<StabilizeOptions> BuildTable() {
   group = "Rolling shutter";
   add(ChoiceOption<O, RsChoice>("rs", &O::rs,
                                 {{"auto", RsChoice::kAuto},
+                                 {"fused", RsChoice::kFused},
                                  {"gyro", RsChoice::kGyro},
                                  {"diffusion", RsChoice::kDiffusion},
+                                 {"tracks", RsChoice::kTracks},
                                  {"off", RsChoice::kOff}}),
       OptionStage::kAnalysis,
       "What tells the motion inside a frame: auto takes a gyro log when there is a trustworthy one "
-      "and corrects nothing otherwise; gyro wants the log or fails; diffusion estimates it from "
-      "each frame's picture; off never corrects.");
+      "and fused otherwise; fused finds one camera rotation and the readout time of the clip from "
+      "its tracks and single pictures, and leaves a global shutter alone; gyro wants the log or "
+      "fails; diffusion estimates each frame from its picture alone; tracks is fused without "
+      "looking at single pictures; off never corrects.");
   add(TextOption("gyro", "FILE", &O::gyro_file), OptionStage::kAnalysis,
       "Gyro log: MP4/MOV with GoPro telemetry, .gcsv, or CSV with the header t,gx,gy,gz (s, "
       "rad/s). "

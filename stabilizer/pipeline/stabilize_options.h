@@ -14,9 +14,11 @@ namespace rsstab::pipeline {
 
 // What tells how the camera moved while a frame was read out.
 enum class RsChoice {
-  kAuto,       // a gyro log when there is a trustworthy one, else no correction
+  kAuto,       // a gyro log when there is a trustworthy one, else as kFused
+  kFused,      // one camera rotation for the clip, from tracks and single pictures
   kGyro,       // a gyro log, or fail
   kDiffusion,  // each frame's picture, by a diffusion model
+  kTracks,     // as kFused without looking at single pictures
   kOff,        // leave rolling shutter alone
 };
 

@@ -188,7 +188,8 @@ TEST(CliOptions, ManualAndCompletionKnowTheOptions) {
   EXPECT_THAT(manual, StartsWith(".TH RS\\-STABILIZE 1"));
   EXPECT_THAT(manual, HasSubstr("\\-\\-gyro\\-offset S"));
   EXPECT_THAT(completion, HasSubstr("--gyro-offset"));
-  EXPECT_THAT(completion, HasSubstr("--rs) COMPREPLY=($(compgen -W \"auto gyro diffusion off\""));
+  EXPECT_THAT(completion,
+              HasSubstr("--rs) COMPREPLY=($(compgen -W \"auto fused gyro diffusion tracks off\""));
 }
 
 TEST(CliOptions, VersionIsOneLine) {

@@ -159,6 +159,7 @@ class ShakingHead final : public RsMotionSource {
 TEST(MotionStage, FollowsTheSensorWhereThereAreNoTracks) {
   RsSelection selection;
   selection.source = std::make_unique<ShakingHead>();
+  selection.rotation_is_known = true;
   selection.camera = Camera::Pinhole(kWidth, kHeight, 500.0);
   const auto frames = Analyze(selection, [](int) { return PointTracks(); });
   const ShakingHead head;

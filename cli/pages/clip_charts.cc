@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/pages/clip_charts.h"
+
+#include <functional>
+#include <numbers>
+#include <string>
+#include <utility>
+
+namespace rsstab::cli {
+namespace {
+
+using report::ChartSeries;
+using report::LineChart;
+using stabilizer::PicturePose;
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr double kPercent = 100.0;
+const char* const kTime = "time, s";
+
+LineChart Chart(std::string title, std::string unit, std::string description) {
+  LineChart chart;
+  chart.title = std::move(title);
+  chart.description = std::move(description);
+  chart.x_label = kTime;
+  chart.y_label = std::move(unit);
+  return chart;
+}
+
+ChartSeries PathSeries(const char* name, const CompareReport::Clip& clip,
+                       const std::function<double(const PicturePose&)>& value) {
+  ChartSeries series;
+  series.name = name;
+  for (std::size_t n = 0; n < clip.poses.size(); ++n) {
+    series.points.emplace_back(static_cast<double>(n) / clip.frames_per_second,
+                               value(clip.poses[n]));
+  }
+  return series;
+}
+
+ChartSeries MomentSeries(const std::vector<RsMoment>& moments, double RsMoment::*value,
+                         double scale = 1.0) {
+  ChartSeries series;
+  for (const RsMoment& moment : moments) {
+    series.points.emplace_back(moment.time_s, scale * moment.*value);
+  }
+  return series;
+}
+
+}  // namespace
+
+std::vector<LineChart> PathCharts(const CompareReport& report) {
+  struct Part {
+    const char* title;
+    const char* unit;
+    std::function<double(const PicturePose&)> value;
+  };
+  const std::vector<Part> parts = {
+      {"Sideways", "px to the right", [](const PicturePose& p) { return p.position.x(); }},
+      {"Up and down", "px down", [](const PicturePose& p) { return p.position.y(); }},
+      {"Rotation", "degrees clockwise",
+       [](const PicturePose& p) { return kDegrees * p.angle_rad; }},
+      {"Zoom", "% of the first frame", [](const PicturePose& p) { return kPercent * p.scale; }}};
+  std::vector<LineChart> charts;
+  for (const Part& part : parts) {
+    LineChart chart = Chart(part.title, part.unit,
+                            "How the picture's content moved since the first frame, before and "
+                            "after.");
+    chart.series = {PathSeries("before", report.input, part.value),
+                    PathSeries("after", report.output, part.value)};
+    charts.push_back(std::move(chart));
+  }
+  return charts;
+}
+
+std::vector<LineChart> RsCharts(const std::vector<RsMoment>& moments) {
+  std::vector<LineChart> charts;
+  const auto add = [&](const char* title, const char* unit, const char* description,
+                       ChartSeries series, bool include_zero) {
+    LineChart chart = Chart(title, unit, description);
+    chart.series = {ChartSeries{}, std::move(series)};  // in the colour of what was done
+    chart.include_zero = include_zero;
+    charts.push_back(std::move(chart));
+  };
+  add("Skew", "px, last row further right",
+      "How much further right the last row of each frame was recorded than the first.",
+      MomentSeries(moments, &RsMoment::sideways_px), true);
+  add("Stretch", "px, last row further down",
+      "How much further down the last row of each frame was recorded than the first.",
+      MomentSeries(moments, &RsMoment::upright_px), true);
+  add("Twist", "degrees clockwise",
+      "How far the last row of each frame is turned against the first.",
+      MomentSeries(moments, &RsMoment::turn_deg), true);
+  add("Kept of each side", "%", "How much of the picture's width and height is shown.",
+      MomentSeries(moments, &RsMoment::kept_ratio, kPercent), false);
+  return charts;
+}
+
+std::vector<LineChart> TruthCharts(const CompareReport& report) {
+  if (!report.input.truth || !report.output.truth) {
+    return {};
+  }
+  const auto series = [](const char* name, const CompareReport::Clip& clip) {
+    ChartSeries result;
+    result.name = name;
+    for (std::size_t n = 0; n < clip.truth->frame_residual.size(); ++n) {
+      result.points.emplace_back(static_cast<double>(n) / clip.frames_per_second,
+                                 clip.truth->frame_residual[n]);
+    }
+    return result;
+  };
+  LineChart chart = Chart("Camera residual", "px",
+                          "How far each frame is from what a global shutter would have seen.");
+  chart.series = {series("before", report.input), series("after", report.output)};
+  chart.include_zero = true;
+  return {std::move(chart)};
+}
+
+}  // namespace rsstab::cli

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stabilizer/clip_calibration.h"
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "igf/base/parallel_for.h"
+
+namespace rsstab::stabilizer {
+namespace {
+
+constexpr double kWidth = 640.0;
+constexpr std::size_t kStretchPairs = 40;
+constexpr std::size_t kMinStretchPairs = 12;
+constexpr std::size_t kMaxStretches = 6;
+constexpr std::size_t kCurveStretches = 3;
+// Readout times that are tried, frame intervals.
+constexpr double kCurveStep = 0.2;
+constexpr int kCurveSteps = 5;  // to either side of 0
+constexpr std::array<double, 6> kJerkWeights = {0.003, 0.01, 0.03, 0.1, 0.3, 1.0};
+// Flexible enough to follow anything, so that robust weights leave out only what is wrong.
+constexpr double kFlexibleJerkWeight = 0.01;
+constexpr int kCurveIterations = 3;
+constexpr int kRefineIterations = 8;
+constexpr double kDefaultFocal = 0.8;
+constexpr double kFocalPriorSigma = 0.15;
+
+// Below this change of velocity there is nothing to see, px per frame^2 at 640 px width.
+constexpr double kMinExcitement_px = 0.15;
+// A sensor reads from the top unless the clip clearly says otherwise: the better of the two
+// directions must explain this share more of what a global shutter leaves unexplained.
+constexpr double kReversedShare = 0.1;
+// What a scene that is not far away can feign, frame intervals.
+constexpr double kSystematicSigma = 0.02;
+// Readouts below this bend a picture by less than can be seen, and parallax feigns them.
+constexpr double kVisibleReadout = 0.08;
+constexpr double kSigmasToBelieve = 3.0;
+// Evidence must be this much better than that of a global shutter.
+constexpr double kMinEvidence = 10.0;
+constexpr double kMaxFocalSigma = 0.03;  // of its logarithm
+constexpr double kSystematicFocalSigma = 0.015;
+constexpr double kMaxFocalParallax_px = 0.1;
+// "No rolling shutter" is said when it is known this well, frame intervals.
+constexpr double kMaxGlobalSigma = 0.05;
+constexpr double kReadoutPriorSigma = 1.0;  // frame intervals
+constexpr double kImpossible = -1e12;
+
+// Mean square change of the affine motion's shift, px^2.
+double Excitement(const std::vector<FramePairCells>& pairs) {
+  double sum = 0.0;
+  for (std::size_t i = 1; i < pairs.size(); ++i) {
+    sum += (pairs[i].affine.col(0) - pairs[i - 1].affine.col(0)).squaredNorm();
+  }
+  return kWidth * kWidth * sum / static_cast<double>(pairs.size());
+}
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+RsMotionModel ModelFor(const ClipCalibrationOptions& options, double readout_s,
+                       double jerk_weight) {
+  RsMotionModel model;
+  model.frame_interval_s = options.frame_interval_s;
+  model.readout_s = readout_s;
+  model.focal = options.focal.value_or(kDefaultFocal);
+  model.jerk_weight = jerk_weight;
+  return model;
+}
+
+RsMotionWindow MakeWindow(const RsMotionModel& model, const std::vector<FramePairCells>& pairs) {
+  SplineStretch stretch;
+  ExtendStretch(model, pairs, stretch);
+  return RsMotionWindow(model, pairs, std::move(stretch), 1);
+}
+
+// The most probable readout time. `table` is centred on 0.
+template <typename Table>
+std::size_t BestReadout(const Table& table) {
+  const std::size_t n = table.by_weight.size();
+  std::size_t best = n / 2;
+  std::size_t best_reversed = n / 2;
+  for (std::size_t i = 0; i < n; ++i) {
+    std::size_t& side = i < n / 2 ? best_reversed : best;
+    if (table.At(i) > table.At(side)) {
+      side = i;
+    }
+  }
+  const double explained = table.At(best_reversed) - table.At(n / 2);
+  const bool is_reversed =
+      table.At(best_reversed) - table.At(best) > kReversedShare * explained && explained > 0.0;
+  return is_reversed ? best_reversed : best;
+}
+
+// One stretch's opinion of (readout in frame intervals, log focal length), with its information.
+struct Opinion {
+  Eigen::Vector2d value = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
+};
+
+// Information-weighted mean, and its covariance from how much the opinions differ (the sandwich
+// estimator: errors that all tracks of a stretch share count as one), but never less than the
+// information promises.
+ClipCalibrator::Consensus Join(const std::vector<Opinion>& opinions,
+                               const Eigen::Vector2d& prior_sigma, const Eigen::Vector2d& prior) {
+  Eigen::Matrix2d total = prior_sigma.array().square().inverse().matrix().asDiagonal();
+  Eigen::Vector2d weighted = total * prior;
+  for (const Opinion& o : opinions) {
+    total += o.information;
+    weighted += o.information * o.value;
+  }
+  const Eigen::Matrix2d covariance = total.inverse();
+  ClipCalibrator::Consensus consensus;
+  consensus.value = covariance * weighted;
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  for (const Opinion& o : opinions) {
+    const Eigen::Vector2d pull = o.information * (o.value - consensus.value);
+    spread += pull * pull.transpose();
+  }
+  const auto n = static_cast<double>(opinions.size());
+  const Eigen::Matrix2d sandwich =
+      covariance * spread * covariance * (n > 1.0 ? n / (n - 1.0) : 1.0);
+  consensus.sigma = sandwich.diagonal().cwiseMax(covariance.diagonal()).cwiseSqrt();
+  return consensus;
+}
+
+}  // namespace
+
+void ClipCalibrator::Push(FramePairCells pair) {
+  const double interval_s = pair.to_time_s - pair.from_time_s;
+  const bool is_regular =
+      interval_s > 0.5 * options_.frame_interval_s && interval_s < 1.5 * options_.frame_interval_s;
+  if (pair.cells.empty() || !is_regular) {
+    FinishStretch();
+    return;
+  }
+  current_.push_back(std::move(pair));
+  if (current_.size() == kStretchPairs) {
+    FinishStretch();
+  }
+}
+
+void ClipCalibrator::FinishStretch() {
+  if (current_.size() >= kMinStretchPairs) {
+    Stretch stretch{std::move(current_), 0.0};
+    stretch.excitement = Excitement(stretch.pairs);
+    const auto place = std::find_if(kept_.begin(), kept_.end(), [&](const Stretch& s) {
+      return s.excitement < stretch.excitement;
+    });
+    kept_.insert(place, std::move(stretch));
+    if (kept_.size() > kMaxStretches) {
+      kept_.pop_back();
+    }
+  }
+  current_.clear();
+}
+
+ClipCalibration ClipCalibrator::Calibrate() {
+  FinishStretch();
+  ClipCalibration result;
+  result.focal = {options_.focal.value_or(kDefaultFocal), 0.0, options_.focal.has_value()};
+  std::erase_if(
+      kept_, [](const Stretch& s) { return s.excitement < kMinExcitement_px * kMinExcitement_px; });
+  result.num_windows = kept_.size();
+  if (options_.readout_s) {
+    result.verdict = ShutterVerdict::kGiven;
+    result.readout_s = {*options_.readout_s, 0.0, true};
+  }
+  if (kept_.empty()) {
+    return result;
+  }
+
+  // The evidence of every readout time and stiffness, over the most telling stretches.
+  std::vector<double> readouts_s;
+  if (options_.readout_s) {
+    readouts_s = {*options_.readout_s};
+  } else {
+    for (int i = -kCurveSteps; i <= kCurveSteps; ++i) {
+      readouts_s.push_back(kCurveStep * i * options_.frame_interval_s);
+    }
+  }
+  const EvidenceTable table = MakeEvidenceTable(readouts_s);
+  const std::size_t best = BestReadout(table);
+  result.jerk_weight = table.JerkWeight(best);
+  if (!options_.readout_s) {
+    for (std::size_t i = 0; i < readouts_s.size(); ++i) {
+      result.curve.push_back({readouts_s[i], table.At(i) - table.At(best)});
+    }
+  }
+
+  // From there every stretch finds its own readout and focal length.
+  const Consensus consensus = Refine(readouts_s[best], result.jerk_weight);
+  result.parallax_px = consensus.parallax_px;
+  if (!options_.focal) {
+    const double focal = std::exp(consensus.value.y());
+    const double sigma = std::hypot(consensus.sigma.y(), kSystematicFocalSigma);
+    // Nearby things that move past pretend a longer lens.
+    if (sigma < kMaxFocalSigma && consensus.parallax_px < kMaxFocalParallax_px) {
+      result.focal = {focal, focal * sigma, true};
+    } else {
+      result.focal.sigma = result.focal.value * kFocalPriorSigma;
+    }
+  }
+  if (options_.readout_s) {
+    return result;
+  }
+  const double sigma = std::hypot(consensus.sigma.x(), kSystematicSigma);
+  const double readout = consensus.value.x();
+  const double over_global =
+      table.At(best) - table.At(readouts_s.size() / 2);  // the curve is centred on 0
+  if (std::abs(readout) > std::max(kSigmasToBelieve * sigma, kVisibleReadout) &&
+      over_global > kMinEvidence) {
+    result.verdict = ShutterVerdict::kRolling;
+    result.readout_s.value = readout * options_.frame_interval_s;
+    result.readout_s.trusted = true;
+  } else if (sigma < kMaxGlobalSigma) {
+    result.verdict = ShutterVerdict::kGlobal;
+    result.readout_s.trusted = true;
+  }
+  result.readout_s.sigma = sigma * options_.frame_interval_s;
+  return result;
+}
+
+ClipCalibrator::EvidenceTable ClipCalibrator::MakeEvidenceTable(
+    const std::vector<double>& readouts_s) const {
+  const std::size_t num_stretches = std::min(kept_.size(), kCurveStretches);
+  std::vector<std::vector<double>> parts(readouts_s.size() * num_stretches);
+  WorkerPool pool(options_.num_threads);
+  pool.ForBlocks(static_cast<int>(parts.size()), 1, [&](int begin, int /*end*/) {
+    const auto i = static_cast<std::size_t>(begin);
+    const RsMotionModel model =
+        ModelFor(options_, readouts_s[i / num_stretches], kFlexibleJerkWeight);
+    RsMotionWindow window = MakeWindow(model, kept_[i % num_stretches].pairs);
+    if (window.Solve({}, kCurveIterations)) {
+      parts[i] = window.LogEvidence(kJerkWeights);
+    } else {
+      parts[i].assign(kJerkWeights.size(), kImpossible);
+    }
+  });
+  EvidenceTable table;
+  table.by_weight.assign(readouts_s.size(), std::vector<double>(kJerkWeights.size(), 0.0));
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    for (std::size_t j = 0; j < kJerkWeights.size(); ++j) {
+      table.by_weight[i / num_stretches][j] += parts[i][j];
+    }
+  }
+  return table;
+}
+
+double ClipCalibrator::EvidenceTable::At(std::size_t readout) const {
+  return *std::max_element(by_weight[readout].begin(), by_weight[readout].end());
+}
+
+double ClipCalibrator::EvidenceTable::JerkWeight(std::size_t readout) const {
+  const auto& row = by_weight[readout];
+  return kJerkWeights[static_cast<std::size_t>(std::max_element(row.begin(), row.end()) -
+                                               row.begin())];
+}
+
+ClipCalibrator::Consensus ClipCalibrator::Refine(double readout_s, double jerk_weight) const {
+  std::vector<Opinion> opinions(kept_.size());
+  std::vector<double> parallax_px(kept_.size(), 0.0);
+  WorkerPool pool(options_.num_threads);
+  pool.ForBlocks(static_cast<int>(opinions.size()), 1, [&](int begin, int /*end*/) {
+    const auto i = static_cast<std::size_t>(begin);
+    RsMotionWindow window = MakeWindow(ModelFor(options_, readout_s, jerk_weight), kept_[i].pairs);
+    if (!window.Solve({!options_.readout_s, !options_.focal}, kRefineIterations)) {
+      return;
+    }
+    const Eigen::Vector2d unit(options_.frame_interval_s, 1.0);
+    opinions[i].value = {window.readout_s() / options_.frame_interval_s, std::log(window.focal())};
+    parallax_px[i] = window.Parallax();
+    opinions[i].information = unit.asDiagonal() * window.ClipInformation() * unit.asDiagonal();
+  });
+  Consensus consensus = Join(
+      opinions, {kReadoutPriorSigma, kFocalPriorSigma},
+      {readout_s / options_.frame_interval_s, std::log(options_.focal.value_or(kDefaultFocal))});
+  consensus.parallax_px = Median(parallax_px);
+  return consensus;
+}
+
+}  // namespace rsstab::stabilizer
