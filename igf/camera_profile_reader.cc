@@ -149,15 +149,72 @@ const json* LensProfileIn(const json& root) {
   return data != nullptr && data->is_object() && data->contains("fisheye_params") ? data : nullptr;
 }
 
+Result<bool> FlagField(const json& root, const char* key, bool otherwise) {
+  const json* flag = FindField(root, key);
+  if (flag == nullptr) {
+    return otherwise;
+  }
+  if (!flag->is_boolean()) {
+    return Fail(ErrorCode::kCorruptData, "\"{}\" is neither true nor false", key);
+  }
+  return flag->get<bool>();
+}
+
+// How sure the file is of what it says; what it does not trust is forgotten.
+Status ReadCertainty(const json& root, CameraProfile* profile) {
+  for (const auto& [key, sigma] : {std::pair{"focal_sigma_px", &profile->focal_sigma_px},
+                                   std::pair{"readout_sigma_s", &profile->readout_sigma_s}}) {
+    const Result<std::optional<double>> value = NumberField(root, key);
+    if (!value) {
+      return Propagate(value.error());
+    }
+    if (*value && !(**value >= 0.0)) {
+      return Fail(ErrorCode::kCorruptData, "\"{}\" is {}; it cannot be negative", key, **value);
+    }
+    *sigma = *value;
+  }
+  const auto trusted = FlagField(root, "trusted", true);
+  if (!trusted) {
+    return Propagate(trusted.error());
+  }
+  const auto focal_trusted = FlagField(root, "focal_trusted", *trusted);
+  const auto readout_trusted = FlagField(root, "readout_trusted", *trusted);
+  if (!focal_trusted || !readout_trusted) {
+    return Propagate(!focal_trusted ? focal_trusted.error() : readout_trusted.error());
+  }
+  Camera& camera = profile->camera;
+  if (!*focal_trusted) {
+    camera.fx = camera.fy = kFocalPrior * camera.width;
+    profile->focal_is_known = false;
+  }
+  if (!*readout_trusted) {
+    camera.readout_s.reset();
+  }
+  return {};
+}
+
 Result<CameraProfile> CameraFromJson(const json& root) {
-  constexpr std::array<std::string_view, 9> kKeys = {
-      "width", "height", "fx", "fy", "cx", "cy", "readout_s", "model", "distortion"};
+  constexpr std::array<std::string_view, 14> kKeys = {"width",
+                                                      "height",
+                                                      "fx",
+                                                      "fy",
+                                                      "cx",
+                                                      "cy",
+                                                      "readout_s",
+                                                      "model",
+                                                      "distortion",
+                                                      "trusted",
+                                                      "focal_trusted",
+                                                      "readout_trusted",
+                                                      "readout_sigma_s",
+                                                      "focal_sigma_px"};
   for (const auto& [key, value] : root.items()) {
     if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end()) {
       return Fail(
           ErrorCode::kCorruptData,
           "unknown key {}; a camera has width, height, fx, fy, cx, cy, readout_s, model and "
-          "distortion",
+          "distortion, a calibrated one readout_sigma_s, focal_sigma_px, trusted, "
+          "readout_trusted and focal_trusted as well",
           Quoted(key));
     }
   }
@@ -199,6 +256,9 @@ Result<CameraProfile> CameraFromJson(const json& root) {
   }
   camera.model = *model;
   camera.distortion = *std::move(distortion);
+  if (Status status = ReadCertainty(root, &profile); !status) {
+    return Propagate(std::move(status).error());
+  }
   return Checked(std::move(profile));
 }
 
@@ -264,27 +324,6 @@ Result<CameraProfile> ParseLensProfile(std::string_view text) {
   });
 }
 
-std::string FormatCameraJson(const Camera& camera) {
-  const auto model = std::find_if(kModels.begin(), kModels.end(),
-                                  [&](const ModelName& m) { return m.model == camera.model; });
-  nlohmann::ordered_json root;
-  root["width"] = camera.width;
-  root["height"] = camera.height;
-  root["fx"] = camera.fx;
-  root["fy"] = camera.fy;
-  root["cx"] = camera.cx;
-  root["cy"] = camera.cy;
-  if (camera.readout_s) {
-    root["readout_s"] = *camera.readout_s;
-  }
-  root["model"] = std::string(model->name);
-  if (!camera.distortion.empty()) {
-    root["distortion"] = camera.distortion;
-  }
-  constexpr int kIndent = 2;
-  return root.dump(kIndent) + "\n";
-}
-
 Result<CameraProfile> ProfileForVideo(const CameraProfile& profile, int width, int height) {
   const Camera& camera = profile.camera;
   if (width < 1 || height < 1) {
@@ -298,7 +337,12 @@ Result<CameraProfile> ProfileForVideo(const CameraProfile& profile, int width, i
                 "use a profile of the mode that the video was recorded in",
                 camera.width, camera.height, shape, width, height, video_shape);
   }
-  return CameraProfile{camera.Rescaled(width, height), profile.focal_is_known};
+  CameraProfile fitted = profile;
+  fitted.camera = camera.Rescaled(width, height);
+  if (fitted.focal_sigma_px) {
+    *fitted.focal_sigma_px *= static_cast<double>(width) / camera.width;
+  }
+  return fitted;
 }
 
 Result<CameraProfile> ReadCameraProfile(const std::string& path) {
@@ -315,13 +359,6 @@ Result<CameraProfile> ReadCameraProfile(const std::string& path) {
     return Propagate(std::move(profile).error(), path);
   }
   return profile;
-}
-
-Status WriteCameraProfile(const std::string& path, const Camera& camera) {
-  if (Status status = camera.Validate(); !status) {
-    return Propagate(std::move(status).error(), path);
-  }
-  return WriteWholeFile(path, FormatCameraJson(camera));
 }
 
 }  // namespace rsstab::igf

@@ -44,7 +44,6 @@ constexpr double kSigmasToBelieve = 3.0;
 constexpr double kMinEvidence = 10.0;
 constexpr double kMaxFocalSigma = 0.03;  // of its logarithm
 constexpr double kSystematicFocalSigma = 0.015;
-constexpr double kMaxFocalParallax_px = 0.1;
 // "No rolling shutter" is said when it is known this well, frame intervals.
 constexpr double kMaxGlobalSigma = 0.05;
 constexpr double kReadoutPriorSigma = 1.0;  // frame intervals
@@ -201,8 +200,7 @@ ClipCalibration ClipCalibrator::Calibrate() {
   if (!options_.focal) {
     const double focal = std::exp(consensus.value.y());
     const double sigma = std::hypot(consensus.sigma.y(), kSystematicFocalSigma);
-    // Nearby things that move past pretend a longer lens.
-    if (sigma < kMaxFocalSigma && consensus.parallax_px < kMaxFocalParallax_px) {
+    if (sigma < kMaxFocalSigma && consensus.parallax_px < kMaxTurningParallax_px) {
       result.focal = {focal, focal * sigma, true};
     } else {
       result.focal.sigma = result.focal.value * kFocalPriorSigma;

@@ -34,6 +34,10 @@ enum class ShutterVerdict {
   kGiven,         // the readout time was given
 };
 
+// Tracks that a rotation explains up to this, RMS at the picture's edge and at 640 px width, come
+// from a camera that only turns; walking past things moves them by more, and feigns a longer lens.
+inline constexpr double kMaxTurningParallax_px = 0.1;
+
 // What is the same for the whole clip, as its tracks tell it.
 struct ClipCalibration {
   ShutterVerdict verdict = ShutterVerdict::kCannotBeTold;

@@ -1,36 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stabilizer/pipeline/analyzer.h"
 
-#include <algorithm>
+#include <optional>
 #include <utility>
 
-#include "stabilizer/clip_calibration.h"
 #include "stabilizer/feature_tracks.h"
-#include "stabilizer/luma_proxy.h"
+#include "stabilizer/pipeline/clip_observer.h"
 #include "stabilizer/pipeline/track_spool.h"
 #include "stabilizer/pipeline/version.h"
-#include "stabilizer/track_cells.h"
 
 namespace rsstab::pipeline {
 namespace {
 
-// Synchronisation looks at a minute of the clip at most, thinned to this many points a frame:
-// 4 MB, and more would not make it surer.
-constexpr std::int64_t kMaxSyncFrames = 1800;
-constexpr std::size_t kMaxSyncMatches = 80;
 constexpr std::int64_t kCancelCheckEvery = 16;
-
-PointTracks Thin(const PointTracks& tracks) {
-  PointTracks thinned = tracks;
-  const std::size_t n = tracks.matches.size();
-  if (n > kMaxSyncMatches) {
-    thinned.matches.clear();
-    for (std::size_t i = 0; i < kMaxSyncMatches; ++i) {
-      thinned.matches.push_back(tracks.matches[i * n / kMaxSyncMatches]);
-    }
-  }
-  return thinned;
-}
 
 }  // namespace
 
@@ -43,10 +25,8 @@ struct Analyzer::Impl {
   std::unique_ptr<stabilizer::AnalysisWriter> writer;
   RsSelection selection;
   std::unique_ptr<MotionStage> stage;
-  std::unique_ptr<TrackSpool> spool;  // only while the source waits for the tracks
-  std::vector<PointTracks> sync_tracks;
-  std::optional<stabilizer::ClipCalibrator> calibrator;
-  std::optional<Camera> lens;  // taken out of the tracks before they calibrate
+  std::unique_ptr<TrackSpool> spool;     // only while the source waits for the tracks
+  std::optional<ClipObserver> observer;  // as long
   std::int64_t num_frames = 0;
   // The clip's clock: first and last frame in ticks and in seconds.
   std::int64_t first_pts = 0;
@@ -133,8 +113,7 @@ Result<std::unique_ptr<Analyzer>> Analyzer::Create(const StabilizeOptions& optio
       return Propagate(std::move(spool.error()));
     }
     impl->spool = std::move(*spool);
-    impl->calibrator.emplace(CalibrationOptions(options, clip, impl->inputs));
-    impl->lens = KnownLens(options, clip, impl->inputs);
+    impl->observer.emplace(options, clip, impl->inputs);
   } else {
     Status ok = impl->StartStage(SelectRsSource(options, clip, impl->inputs, {}, impl->logger));
     if (!ok) {
@@ -151,20 +130,10 @@ Result<std::unique_ptr<Analyzer>> Analyzer::Create(const StabilizeOptions& optio
 
 Status Analyzer::PushFrame(const FrameView& frame, std::int64_t pts, double time_s) {
   Impl& s = *impl_;
-  auto proxy = stabilizer::MakeLumaProxy(frame);
-  if (!proxy) {
-    return Propagate(std::move(proxy.error()));
+  const auto observation = ObserveFrame(s.tracker, frame, pts, time_s);
+  if (!observation) {
+    return Propagate(observation.error());
   }
-  auto tracked = s.tracker.Push(*proxy, time_s);
-  if (!tracked) {
-    return Propagate(std::move(tracked.error()));
-  }
-  FrameObservation observation;
-  observation.pts = pts;
-  observation.time_s = time_s;
-  observation.fingerprint = stabilizer::FingerprintOf(*proxy);
-  observation.attempted_points = tracked->attempted;
-  observation.tracks = std::move(tracked->tracks);
   if (s.num_frames == 0) {
     s.first_pts = pts;
     s.first_s = time_s;
@@ -173,13 +142,10 @@ Status Analyzer::PushFrame(const FrameView& frame, std::int64_t pts, double time
   s.last_s = time_s;
   ++s.num_frames;
   if (s.stage) {
-    return s.Advance(observation, &frame);
+    return s.Advance(*observation, &frame);
   }
-  if (s.num_frames > 1 && s.num_frames <= kMaxSyncFrames) {
-    s.sync_tracks.push_back(Thin(observation.tracks));
-  }
-  s.calibrator->Push(stabilizer::SummarizeTracks(observation.tracks, s.lens ? &*s.lens : nullptr));
-  return s.spool->Append(observation);
+  s.observer->Push(observation->tracks);
+  return s.spool->Append(*observation);
 }
 
 Result<stabilizer::ClipAnalysis> Analyzer::Finish(const std::function<bool()>& cancelled) {
@@ -188,8 +154,8 @@ Result<stabilizer::ClipAnalysis> Analyzer::Finish(const std::function<bool()>& c
     return Fail(ErrorCode::kCorruptData, "the clip has no frame that can be decoded");
   }
   if (!s.stage) {
-    const ClipEvidence evidence{s.sync_tracks, s.calibrator->Calibrate()};
-    Status ok = s.StartStage(SelectRsSource(s.options, s.clip, s.inputs, evidence, s.logger));
+    Status ok =
+        s.StartStage(SelectRsSource(s.options, s.clip, s.inputs, s.observer->Conclude(), s.logger));
     if (ok) {
       ok = s.Replay(cancelled);
     }

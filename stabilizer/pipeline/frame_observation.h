@@ -4,7 +4,10 @@
 
 #include <cstdint>
 
+#include "igf/base/frame.h"
 #include "igf/base/point_tracks.h"
+#include "igf/base/result.h"
+#include "stabilizer/feature_tracks.h"
 #include "stabilizer/luma_proxy.h"
 
 namespace rsstab::pipeline {
@@ -17,6 +20,12 @@ struct FrameObservation {
   int attempted_points = 0;  // looked for; the matches are those found
   PointTracks tracks;        // previous frame -> this one, proxy pixels
 };
+
+// Looks at the next frame of a clip. Errors: those of stabilizer::MakeLumaProxy and
+// stabilizer::FeatureTracker::Push.
+[[nodiscard]] Result<FrameObservation> ObserveFrame(stabilizer::FeatureTracker& tracker,
+                                                    const FrameView& frame, std::int64_t pts,
+                                                    double time_s);
 
 }  // namespace rsstab::pipeline
 

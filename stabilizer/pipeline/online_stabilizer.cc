@@ -37,24 +37,6 @@ struct OnlineStabilizer::Impl {
   std::deque<stabilizer::FrameAnalysis> analyses;  // of frames.front() and those after it
   bool flushed = false;
 
-  Result<FrameObservation> Observe(const FrameView& picture, std::int64_t pts, double time_s) {
-    auto proxy = stabilizer::MakeLumaProxy(picture);
-    if (!proxy) {
-      return Propagate(std::move(proxy.error()));
-    }
-    auto tracked = tracker.Push(*proxy, time_s);
-    if (!tracked) {
-      return Propagate(std::move(tracked.error()));
-    }
-    FrameObservation observation;
-    observation.pts = pts;
-    observation.time_s = time_s;
-    observation.fingerprint = stabilizer::FingerprintOf(*proxy);
-    observation.attempted_points = tracked->attempted;
-    observation.tracks = std::move(tracked->tracks);
-    return observation;
-  }
-
   Status Stage(const FrameObservation& observation, const FrameView* picture) {
     ++num_staged;
     if (Status ok = stage->Push(observation, picture); !ok) {
@@ -130,7 +112,7 @@ Result<std::unique_ptr<OnlineStabilizer>> OnlineStabilizer::Create(const OnlineO
 Status OnlineStabilizer::Push(const Frame& frame, std::int64_t pts, double time_s) {
   Impl& s = *impl_;
   const FrameView picture = frame.View();
-  auto observation = s.Observe(picture, pts, time_s);
+  auto observation = ObserveFrame(s.tracker, picture, pts, time_s);
   if (!observation) {
     return Propagate(std::move(observation.error()));
   }

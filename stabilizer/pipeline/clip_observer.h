@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef RSSTAB_STABILIZER_PIPELINE_CLIP_OBSERVER_H_
+#define RSSTAB_STABILIZER_PIPELINE_CLIP_OBSERVER_H_
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "igf/base/camera.h"
+#include "igf/base/point_tracks.h"
+#include "stabilizer/clip_calibration.h"
+#include "stabilizer/pipeline/rs_source_selection.h"
+
+namespace rsstab::pipeline {
+
+// Gathers, frame by frame, what the choice of the rolling-shutter source rests on. Memory is
+// bounded. In order, not thread safe.
+class ClipObserver {
+ public:
+  ClipObserver(const StabilizeOptions& options, const ClipGeometry& clip, const RsInputs& inputs);
+
+  // The next frame's tracks, from the frame before it to it; the first frame's are empty.
+  void Push(const PointTracks& tracks);
+
+  // What was gathered so far; lives as long as the observer and until the next Push().
+  [[nodiscard]] ClipEvidence Conclude();
+
+ private:
+  std::int64_t num_frames_ = 0;
+  std::vector<PointTracks> sync_tracks_;
+  std::optional<Camera> lens_;  // taken out of the tracks before they calibrate
+  stabilizer::ClipCalibrator calibrator_;
+};
+
+}  // namespace rsstab::pipeline
+
+#endif  // RSSTAB_STABILIZER_PIPELINE_CLIP_OBSERVER_H_

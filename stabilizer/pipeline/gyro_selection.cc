@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stabilizer/pipeline/gyro_selection.h"
+
+#include <memory>
+#include <utility>
+
+#include "igf/gyro_integrator.h"
+#include "igf/gyro_motion_source.h"
+
+namespace rsstab::pipeline {
+namespace {
+
+// Telemetry tracks lag or lead their video by exposure, readout and packet times.
+constexpr double kSharedClockSearchS = 0.25;
+
+// A log that tells nothing about the clip is a wrong log or a wrong offset.
+Status CheckOverlap(const igf::GyroLog& log, double offset_s, std::span<const PointTracks> tracks) {
+  if (tracks.empty()) {
+    return {};
+  }
+  const double clip_begin_s = tracks.front().from_time_s;
+  const double clip_end_s = tracks.back().to_time_s;
+  const double log_begin_s = log.start_s() + offset_s;
+  const double log_end_s = log.end_s() + offset_s;
+  if (log_begin_s < clip_end_s && log_end_s > clip_begin_s) {
+    return {};
+  }
+  return Fail(ErrorCode::kUntrustworthy,
+              "with the offset of {:.3f} s the log lasts from {:.3f} to {:.3f} s and the clip from "
+              "{:.3f} to {:.3f} s, which do not meet: check --gyro-offset",
+              offset_s, log_begin_s, log_end_s, clip_begin_s, clip_end_s);
+}
+
+}  // namespace
+
+Result<igf::GyroSyncResult> BringIntoStep(const StabilizeOptions& options,
+                                          const CameraKnowledge& known, const RsInputs& inputs,
+                                          std::span<const PointTracks> tracks) {
+  igf::GyroSyncOptions sync;
+  sync.focal_is_known = known.focal_is_known;
+  if (inputs.gyro_shares_clock) {
+    sync.search_s = kSharedClockSearchS;
+  }
+  sync.lens_is_known = known.lens_is_known;
+  if (options.gyro_offset_s) {
+    sync.initial_offset_s = *options.gyro_offset_s;
+    sync.search_s = 0.0;
+  }
+  auto result = igf::SynchronizeGyro(tracks, *inputs.gyro, known.camera, sync);
+  if (!result && !options.gyro_offset_s) {
+    return Propagate(std::move(result.error()), inputs.gyro_origin);
+  }
+  if (!options.gyro_offset_s) {
+    return result;
+  }
+  if (!result) {
+    igf::GyroSyncResult given;
+    given.readout_s = known.camera.readout_s.value_or(0.0);
+    given.readout_is_trusted = known.camera.readout_s.has_value();
+    given.confidence = 1.0;
+    result = given;
+  }
+  result->offset_s = *options.gyro_offset_s;
+  return result;
+}
+
+Result<RsSelection> SelectGyro(const StabilizeOptions& options, CameraKnowledge known,
+                               const RsInputs& inputs, std::span<const PointTracks> tracks) {
+  const auto sync = BringIntoStep(options, known, inputs, tracks);
+  if (!sync) {
+    return Propagate(sync.error());
+  }
+  if (Status ok = CheckOverlap(*inputs.gyro, sync->offset_s, tracks); !ok) {
+    return Propagate(std::move(ok.error()), inputs.gyro_origin);
+  }
+  const bool readout_given = known.camera.readout_s.has_value();
+  // A lens found here bends the field only, which lives in recorded pixels: nobody asked for the
+  // clip to be straightened. What follows the path sees a pinhole of the same scale at its centre.
+  Camera field_camera = known.camera;
+  if (sync->focal_is_trusted && !(known.focal_is_known && known.lens_is_known)) {
+    field_camera = sync->camera;
+    known.camera.fx = field_camera.fx;
+    known.camera.fy = field_camera.fy;
+  }
+  const double readout_s = readout_given              ? *known.camera.readout_s
+                           : sync->readout_is_trusted ? sync->readout_s
+                                                      : 0.0;
+  auto track = igf::IntegrateGyro(*inputs.gyro, {.bias_rad_s = sync->bias_rad_s});
+  if (!track) {
+    return Propagate(std::move(track.error()), inputs.gyro_origin);
+  }
+  known.camera.readout_s = readout_s;
+  auto source =
+      igf::GyroMotionSource::Create(field_camera, readout_s, track->WithOffset(sync->offset_s));
+  if (!source) {
+    return Propagate(std::move(source.error()), inputs.gyro_origin);
+  }
+  RsSelection selection;
+  selection.source = std::make_unique<igf::GyroMotionSource>(std::move(*source));
+  selection.camera = known.camera;
+  selection.readout_s = readout_s;
+  selection.rotation_is_known = true;
+  selection.gyro_offset_s = sync->offset_s;
+  selection.reason = fmt::format(
+      "gyro log {} ({:.0f} Hz), offset {:.1f} ms, readout {:.1f} ms ({}), focal length {:.0f} px "
+      "({})",
+      inputs.gyro_origin, inputs.gyro->mean_rate_hz(), sync->offset_s * 1e3, readout_s * 1e3,
+      readout_given              ? "given"
+      : sync->readout_is_trusted ? "estimated"
+                                 : "unknown: taken as a global shutter, give --readout",
+      known.camera.fx,
+      known.focal_is_known     ? "given"
+      : sync->focal_is_trusted ? "estimated"
+                               : "assumed: give --focal or --camera");
+  return selection;
+}
+
+}  // namespace rsstab::pipeline

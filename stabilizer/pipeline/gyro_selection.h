@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef RSSTAB_STABILIZER_PIPELINE_GYRO_SELECTION_H_
+#define RSSTAB_STABILIZER_PIPELINE_GYRO_SELECTION_H_
+
+#include <span>
+
+#include "igf/base/point_tracks.h"
+#include "igf/base/result.h"
+#include "igf/gyro_video_sync.h"
+#include "stabilizer/pipeline/camera_knowledge.h"
+#include "stabilizer/pipeline/rs_source_selection.h"
+
+namespace rsstab::pipeline {
+
+// Brings the log of `inputs` (which must be there) into step with the picture. A given offset is
+// kept; the fit then only finds what else is unknown, and may fail without harm.
+// Errors: those of igf::SynchronizeGyro, naming the log.
+[[nodiscard]] Result<igf::GyroSyncResult> BringIntoStep(const StabilizeOptions& options,
+                                                        const CameraKnowledge& known,
+                                                        const RsInputs& inputs,
+                                                        std::span<const PointTracks> tracks);
+
+// The log of `inputs` as the source. Errors: those of BringIntoStep; kUntrustworthy when log and
+// clip do not meet; those of igf::GyroMotionSource.
+[[nodiscard]] Result<RsSelection> SelectGyro(const StabilizeOptions& options, CameraKnowledge known,
+                                             const RsInputs& inputs,
+                                             std::span<const PointTracks> tracks);
+
+}  // namespace rsstab::pipeline
+
+#endif  // RSSTAB_STABILIZER_PIPELINE_GYRO_SELECTION_H_
