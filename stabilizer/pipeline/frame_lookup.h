@@ -32,13 +32,14 @@ class FrameLookup {
                                                      double max_distance, double time_s) const;
 
   [[nodiscard]] double TimeOf(std::size_t record) const;
+  [[nodiscard]] double frame_s() const { return frame_s_; }  // usual time between frames
   [[nodiscard]] const std::vector<stabilizer::RecordKey>& keys() const { return keys_; }
 
  private:
   std::vector<stabilizer::RecordKey> keys_;
   std::vector<std::size_t> by_time_;  // records in order of their time
   double seconds_per_tick_ = 0.0;
-  double frame_s_ = 0.0;  // usual time between frames
+  double frame_s_ = 0.0;
 };
 
 // Mean absolute difference of two fingerprints, 8-bit levels, after the brightness and contrast

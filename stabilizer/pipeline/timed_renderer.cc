@@ -26,6 +26,8 @@ constexpr double kSearchShare = 0.5;
 // The same frame differs by 0.3 to 0.5 levels, its neighbour in a shaky clip by 2. Once a file is
 // trusted, nothing else is looked for below this.
 constexpr double kSurelyAlike = 0.7;
+// Frames by which a changed frame rate moves one at most.
+constexpr double kRetimedShare = 0.75;
 constexpr double kMaxShapeDifference = 0.01;
 
 }  // namespace
@@ -49,9 +51,28 @@ struct TimedRenderer::Impl {
   int fitting = 0;       // compared frames that fitted in a row
   int unseen = 0;        // frames since the last comparison
 
+  [[nodiscard]] double DistanceTo(std::size_t record,
+                                  const stabilizer::LumaFingerprint& fingerprint) const {
+    return PictureDistance(fingerprint, lookup.keys()[record].fingerprint);
+  }
+
+  // Of a record and its neighbours, the one that looks most like the picture: hosts that change the
+  // frame rate show a frame up to one interval before or after its time.
+  [[nodiscard]] std::size_t MostAlikeNear(std::size_t record,
+                                          const stabilizer::LumaFingerprint& fingerprint) const {
+    std::size_t best = record;
+    for (const std::size_t neighbour : {record - 1, record + 1}) {  // wraps round below 0
+      if (neighbour < lookup.keys().size() &&
+          DistanceTo(neighbour, fingerprint) < DistanceTo(best, fingerprint)) {
+        best = neighbour;
+      }
+    }
+    return best;
+  }
+
   // The record of a frame, by its time; compared with the picture when there is reason to.
   Result<std::size_t> Find(const FrameView& picture, double time_s) {
-    const auto at_time = lookup.AtTime(time_s + shift_s);
+    auto at_time = lookup.AtTime(time_s + shift_s);
     if (at_time && at_time->is_exact && fitting >= kFramesUntilTrusted &&
         unseen < kFingerprintEvery) {
       ++unseen;
@@ -64,9 +85,11 @@ struct TimedRenderer::Impl {
     }
     const auto fingerprint = stabilizer::FingerprintOf(*proxy);
     const double limit = picture.layout.is_rgb ? kMaxDistanceRgb : kMaxDistance;
-    const double expected =
-        at_time ? PictureDistance(fingerprint, lookup.keys()[at_time->record].fingerprint)
-                : std::numeric_limits<double>::infinity();
+    if (at_time && !at_time->is_exact) {
+      at_time->record = MostAlikeNear(at_time->record, fingerprint);
+    }
+    const double expected = at_time ? DistanceTo(at_time->record, fingerprint)
+                                    : std::numeric_limits<double>::infinity();
     // A clip that was cut at its start has records at these times, too: those of other frames.
     const auto alike = fitting >= kFramesUntilTrusted && expected <= kSurelyAlike
                            ? std::nullopt
@@ -87,9 +110,13 @@ struct TimedRenderer::Impl {
                   "this clip",
                   time_s);
     }
-    shift_s = lookup.TimeOf(*alike) - time_s;
-    logger->info("the frame at {:.3f} s is the one at {:.3f} s of the analysed clip", time_s,
-                 lookup.TimeOf(*alike));
+    const double found_shift_s = lookup.TimeOf(*alike) - time_s;
+    // A frame shown a little before or after its time (another frame rate) shifts no others.
+    if (std::abs(found_shift_s - shift_s) > kRetimedShare * lookup.frame_s()) {
+      shift_s = found_shift_s;
+      logger->info("the frame at {:.3f} s is the one at {:.3f} s of the analysed clip", time_s,
+                   lookup.TimeOf(*alike));
+    }
     return *alike;
   }
 };

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <thread>
@@ -234,6 +235,17 @@ TEST_F(TwoPass, AClipCutAtItsStartIsRecognised) {
   instance.SetText(kAnalysisFile, path_);
   for (int i = 11; i < kFrames; ++i) {
     EXPECT_TRUE(instance.Update((i - 11) / kRate, In(i)) == Expected(i)) << i;
+  }
+}
+
+TEST_F(TwoPass, AnotherFrameRateShowsEachFrameByItsOwnRecord) {
+  for (const double rate : {24.0, 25.0, 50.0, 59.94}) {
+    PluginInstance instance(plugin_, kWidth, kHeight);
+    instance.SetText(kAnalysisFile, path_);
+    for (int i = 0; i / rate < (kFrames - 1) / kRate; ++i) {
+      const int shown = static_cast<int>(std::lround(i / rate * kRate));
+      EXPECT_TRUE(instance.Update(i / rate, In(shown)) == Expected(shown)) << rate << ' ' << i;
+    }
   }
 }
 
