@@ -20,6 +20,17 @@ install(DIRECTORY igf rsdiff stabilizer DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/
   PATTERN "street" EXCLUDE PATTERN "models" EXCLUDE PATTERN "train" EXCLUDE
   PATTERN "*_residuals.h" EXCLUDE PATTERN "*_detail.h" EXCLUDE)
 
+# The C interface stands alone: hosts need neither the static libraries nor what they are built with.
+install(TARGETS rsstab_capi EXPORT rsstabCapiTargets
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library
+  NAMELINK_COMPONENT development)
+install(EXPORT rsstabCapiTargets NAMESPACE rsstab:: DESTINATION ${rsstab_package_dir}
+  COMPONENT development)
+install(FILES plugin/capi/rsstab.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
+configure_file(cmake/rsstab.pc.in ${PROJECT_BINARY_DIR}/rsstab.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/rsstab.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
+  COMPONENT development)
+
 set(rsstab_docs ${PROJECT_BINARY_DIR}/generated/docs)
 file(MAKE_DIRECTORY ${rsstab_docs})
 add_custom_command(

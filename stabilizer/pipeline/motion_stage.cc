@@ -30,8 +30,8 @@ constexpr double kZoomReachS = 0.4;
 constexpr int kZoomShare = 4;
 // Where the look-ahead is too short for the planner, zooming out is held back for kZoomHoldS and
 // then changes by no more than this a second.
-constexpr double kZoomHoldS = 1.0;
-constexpr double kMaxWideningPerS = 0.05;
+constexpr double kZoomHoldS = 2.0;
+constexpr double kMaxWideningPerS = 0.02;
 // Focal length where nobody knows it, in picture widths (64 degrees): phones and action cameras in
 // their linear modes lie between 0.6 and 1.0.
 constexpr double kDefaultFocalRatio = 0.8;
