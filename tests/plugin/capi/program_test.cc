@@ -11,7 +11,7 @@
 namespace rsstab::testing {
 namespace {
 
-ProgramResult Run(const std::vector<std::string>& arguments) {
+ProgramResult RunRsStabilize(const std::vector<std::string>& arguments) {
   return RunProgram(RSSTAB_PROGRAM, arguments);
 }
 
@@ -25,9 +25,9 @@ TEST(CapiAndProgram, ApplyEqualsRenderFrameForFrame) {
   description.height = 122;
   description.frames = 40;
   WriteTestClip(clip, description);
-  ProgramResult result = Run({"analyze", clip, "-o", analysis});
+  ProgramResult result = RunRsStabilize({"analyze", clip, "-o", analysis});
   ASSERT_EQ(result.exit_code, 0) << result.error;
-  result = Run({"render", clip, analysis, "-o", steady, "--codec", "ffv1"});
+  result = RunRsStabilize({"render", clip, analysis, "-o", steady, "--codec", "ffv1"});
   ASSERT_EQ(result.exit_code, 0) << result.error;
 
   auto input = media::VideoReader::Open(clip, {});
