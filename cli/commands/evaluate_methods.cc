@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "cli/commands/method_list.h"
+#include "evaluation/baselines/homography_mixture.h"
+#include "evaluation/baselines/rotation_spline.h"
 #include "evaluation/gyro_method.h"
 #include "evaluation/spread_coverage.h"
 #include "rsdiff/model_path.h"
@@ -19,15 +21,19 @@ namespace rsstab::cli {
 namespace {
 
 using evaluation::GyroMethod;
+using evaluation::HomographyMixtureMethod;
 using evaluation::MethodFactory;
 using evaluation::MethodSet;
 using evaluation::NoCorrection;
+using evaluation::RotationSplineMethod;
 using evaluation::SingleImageMethod;
 using rsdiff::SingleImageEstimator;
 
 const char* const kNone = "none";
 const char* const kGyro = "gyro";
 const char* const kGyroOneStep = "gyro-onestep";
+const char* const kHomographyMixture = "homography-mixture";
+const char* const kRotationSpline = "rotation-spline";
 const char* const kRegression = "regression";
 const char* const kSample = "sample";
 const char* const kMean = "mean";
@@ -139,6 +145,12 @@ Result<std::unique_ptr<evaluation::MotionMethod>> MakeMethod(const EvaluateOptio
   if (method.name == kGyro) {
     return std::make_unique<GyroMethod>(method.text, 0);
   }
+  if (method.name == kHomographyMixture) {
+    return std::make_unique<HomographyMixtureMethod>();
+  }
+  if (method.name == kRotationSpline) {
+    return std::make_unique<RotationSplineMethod>();
+  }
   return Fail(ErrorCode::kInvalidArgument, "--methods: there is no method '{}'; choose from {}.",
               method.name, PictureMethodNames());
 }
@@ -182,7 +194,9 @@ Result<MethodSet> MakeMethods(const EvaluateOptions& options,
 }  // namespace
 
 std::string PictureMethodNames() {
-  return "none, gyro, gyro-onestep, diffusion, sample, mean, reference, regression";
+  return "none, gyro, gyro-onestep, diffusion, sample, mean, reference, regression, "
+         "homography-mixture, "
+         "rotation-spline";
 }
 
 Result<MethodFactory> MakeMethodFactory(const EvaluateOptions& options) {

@@ -119,11 +119,12 @@ OptionTable<Options> BuildTable() {
   group = "Methods";
   add(TextOption<Options>("methods", "LIST", &Options::methods),
       "Which to compare, separated by commas: none (the picture as it is; always there); sample "
-      "and "
-      "mean of the model's samples, diffusion (another word for mean; settings may follow, as in "
+      "and mean of the model's samples, diffusion (another word for mean; settings may follow, as "
+      "in "
       "diffusion@steps=1,samples=8), reference and regression where their models are named; gyro "
+      "and gyro-onestep[@bands=60] where pictures have gyro logs; the baselines homography-mixture "
       "and "
-      "gyro-onestep[@bands=60] where pictures have gyro logs. Data sets are given to all of them "
+      "rotation-spline where there is a frame before or after. Data sets are given to all of them "
       "unless told otherwise. Of clips: input, any word of "
       "the main command's --rs, vidstab and deshake (FFmpeg's, where an ffmpeg is installed), all "
       "of them unless given; main options may follow, as in off@smoothness=2.");

@@ -64,7 +64,8 @@ struct EvaluateOptions {
 };
 
 inline constexpr const char* kDatasetMethods =
-    "none,gyro,gyro-onestep,diffusion,diffusion@steps=1,samples=1,reference";
+    "none,gyro,gyro-onestep,diffusion,diffusion@steps=1,samples=1,reference,"
+    "homography-mixture,rotation-spline";
 
 [[nodiscard]] const pipeline::OptionTable<EvaluateOptions>& EvaluateOptionTable();
 

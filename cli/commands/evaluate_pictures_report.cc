@@ -34,14 +34,14 @@ std::string GroupText(const PictureGroup& group) {
     width = std::max(width, m.method.size() + 2);
   }
   std::string text = fmt::format(
-      "\n{}, {} pictures\n{:<{}}{:>6}{:>5}{:>8}{:>16}{:>8}{:>8}{:>16}{:>8}{:>16}{:>8}{:>7}{:>7}"
+      "\n{}, {} pictures\n{:<{}}{:>6}{:>5}{:>8}{:>18}{:>8}{:>8}{:>18}{:>8}{:>18}{:>8}{:>7}{:>7}"
       "{:>9}{:>8}{:>8}{:>9}\n",
       group.title, group.pictures, "method", width, "n", "left", "PSNR", "", "SSIM", "EPE", "",
       "change", "", "median", "u", "v", "flicker", "valid%", "PSNR in", "ms");
   for (const PictureMethodSummary& m : group.methods) {
     text += fmt::format("{:<{}}{:>6}{:>5}", m.method, width, m.pictures, m.declined) +
-            WithInterval(m.psnr_db, 8, 16, 2) + Cell(m.ssim.mean, 8, 3) +
-            WithInterval(m.epe_px, 8, 16, 2) + WithInterval(m.epe_change_px, 8, 16, 2) +
+            WithInterval(m.psnr_db, 8, 18, 2) + Cell(m.ssim.mean, 8, 3) +
+            WithInterval(m.epe_px, 8, 18, 2) + WithInterval(m.epe_change_px, 8, 18, 2) +
             Cell(m.epe_median_px, 8, 2) + Cell(m.horizontal_px, 7, 2) + Cell(m.vertical_px, 7, 2) +
             Cell(m.flicker_px.mean, 9, 2) + Cell(kPercent * m.valid_share, 8, 1) +
             Cell(m.untouched_psnr_db, 8, 2) + Cell(m.ms, 9, 1) + "\n";
