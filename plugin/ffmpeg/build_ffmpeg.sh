@@ -69,6 +69,11 @@ fetch_source() {
 compiler=gcc
 command -v ccache >/dev/null && compiler="ccache gcc"
 options=(--cc="$compiler" --disable-doc --enable-version3 --enable-librsstab "$@")
+# A library outside the system's folders is looked for where it is now.
+library=$(pkg-config --variable=libdir rsstab)
+if [[ -n $library && $library != /usr/lib* ]]; then
+  options+=("--extra-ldflags=-Wl,-rpath,$(realpath "$library")")
+fi
 stamp="$(pkg-config --modversion --cflags --libs rsstab) $(cksum <"$folder/source/configure") ${options[*]}"
 cd "$folder"
 if [[ ! -f ffbuild/config.mak || $(cat configured 2>/dev/null) != "$stamp" ]]; then

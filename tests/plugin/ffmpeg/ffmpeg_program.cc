@@ -55,9 +55,10 @@ void WritePackageFile(const fs::path& folder) {
   const std::string library = RSSTAB_LIBRARY_DIR;
   fs::create_directories(folder);
   std::ofstream(folder / "rsstab.pc")
-      << "Name: rsstab\nDescription: library of this build tree\nVersion: " RSSTAB_PACKAGE_VERSION
+      << "libdir=" << library
+      << "\nName: rsstab\nDescription: library of this build tree\nVersion: " RSSTAB_PACKAGE_VERSION
       << "\nCflags: -I" << SourceFile("plugin/capi").string() << "\nLibs: -L" << library
-      << " -lrsstab -Wl,-rpath," << library << "\n";
+      << " -lrsstab\n";
 }
 
 }  // namespace
