@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stabilizer/pipeline/readout_from_pictures.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "igf/base/frame.h"
+
+namespace rsstab::pipeline {
+namespace {
+
+constexpr std::size_t kMaxPictures = 48;
+// Nearer frames show the same scene at the same speed.
+constexpr std::int64_t kMinSpacing = 4;
+// Slower pictures are not skewed enough to be worth a question, px per frame at 640 px width.
+constexpr double kMinSpeed = 2.0 / 640.0;
+constexpr std::size_t kMinPictures = 6;
+// Candidates, frame intervals: the answers are a straight line in them.
+constexpr std::array<double, 3> kCandidates = {-0.5, 0.25, 1.0};
+// One step and an antithetic pair of samples give the best mean for the time.
+constexpr int kSteps = 1;
+constexpr int kSamples = 2;
+// What leaning things make the model see in a whole clip, as a skew in picture widths.
+constexpr double kContentSigma = 0.004;
+
+// The picture as if its rows had been read out with the opposite skew: every row is moved by its
+// share of the motion in one readout, so that a readout of `intervals` frame intervals is undone.
+stabilizer::GrayImage Unskewed(const stabilizer::GrayImage& picture,
+                               const Eigen::Vector2d& velocity, double intervals) {
+  stabilizer::GrayImage out = picture;
+  const Eigen::Vector2d motion_px = velocity * picture.width * intervals;
+  const auto at = [&](int x, int y) {
+    const int cx = std::clamp(x, 0, picture.width - 1);
+    const int cy = std::clamp(y, 0, picture.height - 1);
+    return static_cast<double>(
+        picture.pixels[static_cast<std::size_t>(cy) * static_cast<std::size_t>(picture.width) +
+                       static_cast<std::size_t>(cx)]);
+  };
+  for (int y = 0; y < picture.height; ++y) {
+    // Backward displacement G = motion * share(row of the source); one fixed-point step is exact
+    // for a steady motion.
+    const double share = (y + 0.5) / picture.height - 0.5;
+    const double source_share = share / (1.0 - motion_px.y() / picture.height);
+    const Eigen::Vector2d shift = motion_px * source_share;
+    const double source_y = y + shift.y();
+    const int y0 = static_cast<int>(std::floor(source_y));
+    const double fy = source_y - y0;
+    const int dx = static_cast<int>(std::floor(shift.x()));
+    const double fx = shift.x() - dx;
+    for (int x = 0; x < picture.width; ++x) {
+      const double upper = (1.0 - fx) * at(x + dx, y0) + fx * at(x + dx + 1, y0);
+      const double lower = (1.0 - fx) * at(x + dx, y0 + 1) + fx * at(x + dx + 1, y0 + 1);
+      out.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
+                 static_cast<std::size_t>(x)] =
+          static_cast<std::uint8_t>(std::lround((1.0 - fy) * upper + fy * lower));
+    }
+  }
+  return out;
+}
+
+FrameView ViewOf(const stabilizer::GrayImage& picture) {
+  FrameView view;
+  view.layout = GrayLayout();
+  view.layout.full_range = true;
+  view.width = picture.width;
+  view.height = picture.height;
+  view.planes[0] = {picture.pixels.data(), picture.width, picture.width, picture.height};
+  return view;
+}
+
+// Motion of the picture's centre from the first row to the last, picture widths, by the
+// least-squares line through the bands.
+Eigen::Vector2d SkewOf(const rsdiff::RotationCurve& curve, double aspect) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  double weight = 0.0;
+  const auto bands = static_cast<double>(curve.size());
+  for (std::size_t b = 0; b < curve.size(); ++b) {
+    const double share = (static_cast<double>(b) + 0.5) / bands - 0.5;
+    sum += share * curve[b].head<2>() * aspect;
+    weight += share * share;
+  }
+  return sum / weight;
+}
+
+// Sums of a regression of skew on velocity with a common content term, per picture, so that
+// pictures can be left out.
+struct Sums {
+  double vv = 0.0;
+  Eigen::Vector2d v = Eigen::Vector2d::Zero();
+  double n = 0.0;
+  std::array<double, kCandidates.size()> vs{};
+  std::array<Eigen::Vector2d, kCandidates.size()> s{
+      Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
+
+  void Add(const Sums& other, double sign) {
+    vv += sign * other.vv;
+    v += sign * other.v;
+    n += sign * other.n;
+    for (std::size_t c = 0; c < vs.size(); ++c) {
+      vs[c] += sign * other.vs[c];
+      s[c] += sign * other.s[c];
+    }
+  }
+
+  // Skew per velocity; the content term is shrunk by its prior, `noise` being a picture's variance.
+  [[nodiscard]] double Slope(std::size_t c, double noise) const {
+    const double shrunk = 1.0 / (n + noise / (kContentSigma * kContentSigma));
+    return (vs[c] - shrunk * v.dot(s[c])) / std::max(vv - shrunk * v.squaredNorm(), 1e-12);
+  }
+};
+
+struct Line {
+  double response = 0.0;  // minus the slope
+  double zero = 0.0;      // frame intervals
+};
+Line LineThrough(const std::array<double, kCandidates.size()>& slopes) {
+  const auto n = static_cast<double>(kCandidates.size());
+  double mean_c = 0.0;
+  double mean_s = 0.0;
+  for (std::size_t c = 0; c < kCandidates.size(); ++c) {
+    mean_c += kCandidates[c] / n;
+    mean_s += slopes[c] / n;
+  }
+  double cc = 0.0;
+  double cs = 0.0;
+  for (std::size_t c = 0; c < kCandidates.size(); ++c) {
+    cc += (kCandidates[c] - mean_c) * (kCandidates[c] - mean_c);
+    cs += (kCandidates[c] - mean_c) * (slopes[c] - mean_s);
+  }
+  const double response = -cs / cc;
+  return {response, mean_c + mean_s / response};
+}
+
+}  // namespace
+
+void ReadoutPictures::Offer(const stabilizer::GrayImage& picture, const Eigen::Vector2d& velocity) {
+  const std::int64_t frame = num_frames_++;
+  const double speed = velocity.norm();
+  if (!(speed >= kMinSpeed)) {
+    return;
+  }
+  const auto near = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) {
+    return frame - kept.frame < kMinSpacing;
+  });
+  if (near != kept_.end()) {
+    if (near->velocity.norm() >= speed) {
+      return;
+    }
+    kept_.erase(near);
+  } else if (kept_.size() == kMaxPictures) {
+    if (kept_.back().velocity.norm() >= speed) {
+      return;
+    }
+    kept_.pop_back();
+  }
+  const auto place = std::find_if(kept_.begin(), kept_.end(),
+                                  [&](const Kept& kept) { return kept.velocity.norm() < speed; });
+  kept_.insert(place, {frame, velocity, picture});
+}
+
+Result<PictureReadout> ReadoutPictures::Ask(rsdiff::SingleImageEstimator& estimator,
+                                            double frame_interval_s) const {
+  PictureReadout result;
+  result.num_pictures = kept_.size();
+  result.sigma_s = std::numeric_limits<double>::infinity();
+  if (kept_.size() < kMinPictures) {
+    return result;
+  }
+  rsdiff::SamplingOptions sampling;
+  sampling.steps = kSteps;
+  sampling.samples = kSamples;
+  std::vector<Sums> parts;
+  Sums total;
+  double noise = 0.0;
+  for (const Kept& kept : kept_) {
+    Sums part;
+    part.vv = kept.velocity.squaredNorm();
+    part.v = kept.velocity;
+    part.n = 1.0;
+    for (std::size_t c = 0; c < kCandidates.size(); ++c) {
+      const stabilizer::GrayImage picture = Unskewed(kept.picture, kept.velocity, kCandidates[c]);
+      const auto motion = estimator.Estimate(ViewOf(picture), sampling);
+      if (!motion) {
+        return Propagate(motion.error());
+      }
+      part.s[c] = SkewOf(motion->curve_mean, static_cast<double>(picture.height) / picture.width);
+      part.vs[c] = kept.velocity.dot(part.s[c]);
+      noise += part.s[c].squaredNorm() / static_cast<double>(2 * kept_.size() * kCandidates.size());
+    }
+    total.Add(part, 1.0);
+    parts.push_back(part);
+  }
+
+  const auto slopes_of = [&](const Sums& sums) {
+    std::array<double, kCandidates.size()> slopes{};
+    for (std::size_t c = 0; c < kCandidates.size(); ++c) {
+      slopes[c] = sums.Slope(c, noise);
+    }
+    return slopes;
+  };
+  const auto slopes = slopes_of(total);
+  const Line line = LineThrough(slopes);
+  // Leave one picture out in turn (jackknife): pictures differ in what they show.
+  const auto n = static_cast<double>(parts.size());
+  double zero_variance = 0.0;
+  double response_variance = 0.0;
+  std::array<double, kCandidates.size()> slope_variance{};
+  for (const Sums& part : parts) {
+    Sums rest = total;
+    rest.Add(part, -1.0);
+    const auto rest_slopes = slopes_of(rest);
+    const Line rest_line = LineThrough(rest_slopes);
+    zero_variance += (n - 1.0) / n * std::pow(rest_line.zero - line.zero, 2);
+    response_variance += (n - 1.0) / n * std::pow(rest_line.response - line.response, 2);
+    for (std::size_t c = 0; c < kCandidates.size(); ++c) {
+      slope_variance[c] += (n - 1.0) / n * std::pow(rest_slopes[c] - slopes[c], 2);
+    }
+  }
+  result.response = line.response;
+  result.readout_s = line.zero * frame_interval_s;
+  // A response that may as well be none has no zero to speak of.
+  if (line.response > 3.0 * std::sqrt(response_variance)) {
+    result.sigma_s = std::sqrt(zero_variance) * frame_interval_s;
+  }
+  for (std::size_t c = 0; c < kCandidates.size(); ++c) {
+    result.curve.push_back(
+        {kCandidates[c] * frame_interval_s, slopes[c], std::sqrt(slope_variance[c])});
+  }
+  return result;
+}
+
+}  // namespace rsstab::pipeline
