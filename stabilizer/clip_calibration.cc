@@ -46,6 +46,8 @@ constexpr double kMaxFocalSigma = 0.03;  // of its logarithm
 constexpr double kSystematicFocalSigma = 0.015;
 // "No rolling shutter" is said when it is known this well, frame intervals.
 constexpr double kMaxGlobalSigma = 0.05;
+constexpr double kMaxReadoutSigma = 0.1;
+constexpr std::size_t kFavourites = 4;
 constexpr double kReadoutPriorSigma = 1.0;  // frame intervals
 constexpr double kImpossible = -1e12;
 
@@ -80,22 +82,22 @@ RsMotionWindow MakeWindow(const RsMotionModel& model, const std::vector<FramePai
   return RsMotionWindow(model, pairs, std::move(stretch), 1);
 }
 
-// The most probable readout time. `table` is centred on 0.
+// The most probable of `readouts_s` (ascending, 0 among them).
 template <typename Table>
-std::size_t BestReadout(const Table& table) {
-  const std::size_t n = table.by_weight.size();
-  std::size_t best = n / 2;
-  std::size_t best_reversed = n / 2;
-  for (std::size_t i = 0; i < n; ++i) {
-    std::size_t& side = i < n / 2 ? best_reversed : best;
+std::size_t BestReadout(const Table& table, const std::vector<double>& readouts_s) {
+  const auto global = static_cast<std::size_t>(
+      std::find(readouts_s.begin(), readouts_s.end(), 0.0) - readouts_s.begin());
+  std::size_t best = global;
+  std::size_t best_reversed = global;
+  for (std::size_t i = 0; i < readouts_s.size(); ++i) {
+    std::size_t& side = i < global ? best_reversed : best;
     if (table.At(i) > table.At(side)) {
       side = i;
     }
   }
-  const double explained = table.At(best_reversed) - table.At(n / 2);
-  const bool is_reversed =
-      table.At(best_reversed) - table.At(best) > kReversedShare * explained && explained > 0.0;
-  return is_reversed ? best_reversed : best;
+  const double explained = table.At(best_reversed) - table.At(global);
+  const double lead = table.At(best_reversed) - table.At(best);
+  return explained > 0.0 && lead > kReversedShare * explained ? best_reversed : best;
 }
 
 // One stretch's opinion of (readout in frame intervals, log focal length), with its information.
@@ -130,6 +132,53 @@ ClipCalibrator::Consensus Join(const std::vector<Opinion>& opinions,
   return consensus;
 }
 
+Estimate FocalOf(const ClipCalibrator::Consensus& consensus) {
+  const double focal = std::exp(consensus.value.y());
+  const double sigma = std::hypot(consensus.sigma.y(), kSystematicFocalSigma);
+  if (sigma < kMaxFocalSigma && consensus.parallax_px < kMaxTurningParallax_px) {
+    return {focal, focal * sigma, true};
+  }
+  return {kDefaultFocal, kDefaultFocal * kFocalPriorSigma, false};
+}
+
+// Joins what tracks and pictures say of the readout, and says what to make of it.
+void Judge(double frame_interval_s, bool beats_global, ClipCalibration& result) {
+  double information = 0.0;
+  double weighted = 0.0;
+  const auto add = [&](const Estimate& e) {
+    information += 1.0 / (e.sigma * e.sigma);
+    weighted += e.value / (e.sigma * e.sigma);
+  };
+  const auto& tracks = result.tracks_readout_s;
+  const auto& pictures = result.pictures_readout_s;
+  if (tracks) {
+    add(*tracks);
+  }
+  // Where the two contradict each other the tracks are believed: they see motion, the pictures
+  // only guess it from what stands upright.
+  const bool agree = !tracks || !pictures ||
+                     std::abs(tracks->value - pictures->value) <
+                         kSigmasToBelieve * std::hypot(tracks->sigma, pictures->sigma);
+  if (pictures && std::isfinite(pictures->sigma) && agree) {
+    add(*pictures);
+  }
+  if (!(information > 0.0)) {
+    return;
+  }
+  const double readout_s = weighted / information;
+  const double sigma_s = 1.0 / std::sqrt(information);
+  result.readout_s = {0.0, sigma_s, false};
+  if (std::abs(readout_s) >
+          std::max(kSigmasToBelieve * sigma_s, kVisibleReadout * frame_interval_s) &&
+      beats_global) {
+    result.verdict = ShutterVerdict::kRolling;
+    result.readout_s = {readout_s, sigma_s, true};
+  } else if (sigma_s < kMaxGlobalSigma * frame_interval_s) {
+    result.verdict = ShutterVerdict::kGlobal;
+    result.readout_s.trusted = true;
+  }
+}
+
 }  // namespace
 
 void ClipCalibrator::Push(FramePairCells pair) {
@@ -161,7 +210,7 @@ void ClipCalibrator::FinishStretch() {
   current_.clear();
 }
 
-ClipCalibration ClipCalibrator::Calibrate() {
+ClipCalibration ClipCalibrator::Calibrate(const std::optional<Estimate>& pictures) {
   FinishStretch();
   ClipCalibration result;
   result.focal = {options_.focal.value_or(kDefaultFocal), 0.0, options_.focal.has_value()};
@@ -171,71 +220,94 @@ ClipCalibration ClipCalibrator::Calibrate() {
   if (options_.readout_s) {
     result.verdict = ShutterVerdict::kGiven;
     result.readout_s = {*options_.readout_s, 0.0, true};
-  }
-  if (kept_.empty()) {
-    return result;
-  }
-
-  // The evidence of every readout time and stiffness, over the most telling stretches.
-  std::vector<double> readouts_s;
-  if (options_.readout_s) {
-    readouts_s = {*options_.readout_s};
   } else {
-    for (int i = -kCurveSteps; i <= kCurveSteps; ++i) {
-      readouts_s.push_back(kCurveStep * i * options_.frame_interval_s);
-    }
+    result.pictures_readout_s = pictures;
   }
-  const EvidenceTable table = MakeEvidenceTable(readouts_s);
-  const std::size_t best = BestReadout(table);
-  result.jerk_weight = table.JerkWeight(best);
+  bool beats_global = true;
+  if (!kept_.empty()) {
+    double start_s = 0.0;
+    SearchReadout(result, start_s, beats_global);
+    // From there every stretch finds its own readout and focal length.
+    const Consensus consensus = Refine(start_s, result.jerk_weight);
+    result.parallax_px = consensus.parallax_px;
+    if (!options_.focal) {
+      result.focal = FocalOf(consensus);
+    }
+    const double sigma = std::hypot(consensus.sigma.x(), kSystematicSigma);
+    result.tracks_readout_s = {consensus.value.x() * options_.frame_interval_s,
+                               sigma * options_.frame_interval_s, sigma < kMaxReadoutSigma};
+  }
   if (!options_.readout_s) {
-    for (std::size_t i = 0; i < readouts_s.size(); ++i) {
-      result.curve.push_back({readouts_s[i], table.At(i) - table.At(best)});
-    }
+    Judge(options_.frame_interval_s, beats_global, result);
   }
-
-  // From there every stretch finds its own readout and focal length.
-  const Consensus consensus = Refine(readouts_s[best], result.jerk_weight);
-  result.parallax_px = consensus.parallax_px;
-  if (!options_.focal) {
-    const double focal = std::exp(consensus.value.y());
-    const double sigma = std::hypot(consensus.sigma.y(), kSystematicFocalSigma);
-    if (sigma < kMaxFocalSigma && consensus.parallax_px < kMaxTurningParallax_px) {
-      result.focal = {focal, focal * sigma, true};
-    } else {
-      result.focal.sigma = result.focal.value * kFocalPriorSigma;
-    }
-  }
-  if (options_.readout_s) {
-    return result;
-  }
-  const double sigma = std::hypot(consensus.sigma.x(), kSystematicSigma);
-  const double readout = consensus.value.x();
-  const double over_global =
-      table.At(best) - table.At(readouts_s.size() / 2);  // the curve is centred on 0
-  if (std::abs(readout) > std::max(kSigmasToBelieve * sigma, kVisibleReadout) &&
-      over_global > kMinEvidence) {
-    result.verdict = ShutterVerdict::kRolling;
-    result.readout_s.value = readout * options_.frame_interval_s;
-    result.readout_s.trusted = true;
-  } else if (sigma < kMaxGlobalSigma) {
-    result.verdict = ShutterVerdict::kGlobal;
-    result.readout_s.trusted = true;
-  }
-  result.readout_s.sigma = sigma * options_.frame_interval_s;
   return result;
 }
 
-ClipCalibrator::EvidenceTable ClipCalibrator::MakeEvidenceTable(
-    const std::vector<double>& readouts_s) const {
+void ClipCalibrator::SearchReadout(ClipCalibration& result, double& readout_s,
+                                   bool& beats_global) const {
   const std::size_t num_stretches = std::min(kept_.size(), kCurveStretches);
+  if (options_.readout_s) {
+    readout_s = *options_.readout_s;
+    result.jerk_weight = MakeEvidenceTable({readout_s}, 0, num_stretches).JerkWeight(0);
+    return;
+  }
+  // Everything on the most telling stretch, then its favourites and the global shutter on more.
+  std::vector<double> grid_s;
+  for (int i = -kCurveSteps; i <= kCurveSteps; ++i) {
+    grid_s.push_back(kCurveStep * i * options_.frame_interval_s);
+  }
+  const EvidenceTable first = MakeEvidenceTable(grid_s, 0, 1);
+  std::vector<std::size_t> order(grid_s.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const std::size_t global = grid_s.size() / 2;
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return (a == global) != (b == global) ? a == global : first.At(a) > first.At(b);
+  });
+  for (std::size_t i = 0; i < grid_s.size(); ++i) {
+    result.curve.push_back({grid_s[i], first.At(i)});
+  }
+  const double highest =
+      std::max_element(result.curve.begin(), result.curve.end(), [](const auto& a, const auto& b) {
+        return a.log_evidence < b.log_evidence;
+      })->log_evidence;
+  for (ReadoutHypothesis& hypothesis : result.curve) {
+    hypothesis.log_evidence -= highest;
+  }
+
+  order.resize(kFavourites + 1);
+  std::sort(order.begin(), order.end());
+  std::vector<double> favourites_s;
+  EvidenceTable table;
+  for (const std::size_t i : order) {
+    favourites_s.push_back(grid_s[i]);
+    table.by_weight.push_back(first.by_weight[i]);
+  }
+  if (num_stretches > 1) {
+    const EvidenceTable more = MakeEvidenceTable(favourites_s, 1, num_stretches);
+    for (std::size_t i = 0; i < table.by_weight.size(); ++i) {
+      for (std::size_t j = 0; j < kJerkWeights.size(); ++j) {
+        table.by_weight[i][j] += more.by_weight[i][j];
+      }
+    }
+  }
+  const std::size_t best = BestReadout(table, favourites_s);
+  readout_s = favourites_s[best];
+  result.jerk_weight = table.JerkWeight(best);
+  const auto without = static_cast<std::size_t>(
+      std::find(favourites_s.begin(), favourites_s.end(), grid_s[global]) - favourites_s.begin());
+  beats_global = table.At(best) - table.At(without) > kMinEvidence;
+}
+
+ClipCalibrator::EvidenceTable ClipCalibrator::MakeEvidenceTable(
+    const std::vector<double>& readouts_s, std::size_t first, std::size_t last) const {
+  const std::size_t num_stretches = last - first;
   std::vector<std::vector<double>> parts(readouts_s.size() * num_stretches);
   WorkerPool pool(options_.num_threads);
   pool.ForBlocks(static_cast<int>(parts.size()), 1, [&](int begin, int /*end*/) {
     const auto i = static_cast<std::size_t>(begin);
     const RsMotionModel model =
         ModelFor(options_, readouts_s[i / num_stretches], kFlexibleJerkWeight);
-    RsMotionWindow window = MakeWindow(model, kept_[i % num_stretches].pairs);
+    RsMotionWindow window = MakeWindow(model, kept_[first + i % num_stretches].pairs);
     if (window.Solve({}, kCurveIterations)) {
       parts[i] = window.LogEvidence(kJerkWeights);
     } else {

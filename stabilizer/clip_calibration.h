@@ -21,7 +21,7 @@ struct Estimate {
   bool trusted = false;
 };
 
-// How well one readout time explains the clip.
+// How well one readout time explains the most telling stretch of the clip.
 struct ReadoutHypothesis {
   double readout_s = 0.0;
   double log_evidence = 0.0;  // natural logarithm, of the best hypothesis = 0
@@ -42,7 +42,9 @@ inline constexpr double kMaxTurningParallax_px = 0.1;
 struct ClipCalibration {
   ShutterVerdict verdict = ShutterVerdict::kCannotBeTold;
   Estimate readout_s;  // signed, first row to last; 0 unless kRolling or kGiven
-  Estimate focal;      // picture widths
+  std::optional<Estimate> tracks_readout_s;    // what the tracks alone say
+  std::optional<Estimate> pictures_readout_s;  // what single pictures alone say
+  Estimate focal;                              // picture widths
   double jerk_weight = 0.1;
   std::vector<ReadoutHypothesis> curve;  // in order of readout; empty when given
   std::size_t num_windows = 0;           // stretches of the clip that it is based on
@@ -69,8 +71,9 @@ class ClipCalibrator {
   // The next pair of consecutive frames. One without cells ends a stretch.
   void Push(FramePairCells pair);
 
-  // Answers for what was pushed so far.
-  [[nodiscard]] ClipCalibration Calibrate();
+  // Answers for what was pushed so far. `pictures`: what single pictures say of the readout time,
+  // s; joined with what the tracks say by their variances, unless the two contradict each other.
+  [[nodiscard]] ClipCalibration Calibrate(const std::optional<Estimate>& pictures = {});
 
   // (readout in frame intervals, log of the focal length), and one standard deviation of each.
   struct Consensus {
@@ -91,7 +94,11 @@ class ClipCalibrator {
     double excitement = 0.0;
   };
   void FinishStretch();
-  [[nodiscard]] EvidenceTable MakeEvidenceTable(const std::vector<double>& readouts_s) const;
+  // Over the stretches from `first` to `last` - 1.
+  [[nodiscard]] EvidenceTable MakeEvidenceTable(const std::vector<double>& readouts_s,
+                                                std::size_t first, std::size_t last) const;
+  // The readout time, of those on a grid, that explains the stretches best.
+  void SearchReadout(ClipCalibration& result, double& readout_s, bool& beats_global) const;
   [[nodiscard]] Consensus Refine(double readout_s, double jerk_weight) const;
 
   ClipCalibrationOptions options_;

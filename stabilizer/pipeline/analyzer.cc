@@ -113,7 +113,7 @@ Result<std::unique_ptr<Analyzer>> Analyzer::Create(const StabilizeOptions& optio
       return Propagate(std::move(spool.error()));
     }
     impl->spool = std::move(*spool);
-    impl->observer.emplace(options, clip, impl->inputs);
+    impl->observer.emplace(options, clip, impl->inputs, impl->logger);
   } else {
     Status ok = impl->StartStage(SelectRsSource(options, clip, impl->inputs, {}, impl->logger));
     if (!ok) {
@@ -130,10 +130,11 @@ Result<std::unique_ptr<Analyzer>> Analyzer::Create(const StabilizeOptions& optio
 
 Status Analyzer::PushFrame(const FrameView& frame, std::int64_t pts, double time_s) {
   Impl& s = *impl_;
-  const auto observation = ObserveFrame(s.tracker, frame, pts, time_s);
-  if (!observation) {
-    return Propagate(observation.error());
+  auto observed = ObserveFrame(s.tracker, frame, pts, time_s);
+  if (!observed) {
+    return Propagate(std::move(observed.error()));
   }
+  const FrameObservation& observation = observed->observation;
   if (s.num_frames == 0) {
     s.first_pts = pts;
     s.first_s = time_s;
@@ -142,10 +143,10 @@ Status Analyzer::PushFrame(const FrameView& frame, std::int64_t pts, double time
   s.last_s = time_s;
   ++s.num_frames;
   if (s.stage) {
-    return s.Advance(*observation, &frame);
+    return s.Advance(observation, &frame);
   }
-  s.observer->Push(observation->tracks);
-  return s.spool->Append(*observation);
+  s.observer->Push(observation.tracks, std::move(observed->proxy));
+  return s.spool->Append(observation);
 }
 
 Result<stabilizer::ClipAnalysis> Analyzer::Finish(const std::function<bool()>& cancelled) {

@@ -97,11 +97,11 @@ void AddGyro(const Result<igf::GyroSyncResult>& sync, const ClipGeometry& clip,
 
 struct Calibrator::Impl {
   Impl(const StabilizeOptions& stabilize_options, const ClipGeometry& geometry,
-       RsInputs known_inputs)
+       RsInputs known_inputs, Logger logger)
       : options(stabilize_options),
         clip(geometry),
         inputs(std::move(known_inputs)),
-        observer(options, clip, inputs) {}
+        observer(options, clip, inputs, std::move(logger)) {}
 
   StabilizeOptions options;
   ClipGeometry clip;
@@ -115,24 +115,25 @@ Calibrator::Calibrator(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Calibrator::~Calibrator() = default;
 
 Result<std::unique_ptr<Calibrator>> Calibrator::Create(const StabilizeOptions& options,
-                                                       const ClipGeometry& clip, RsInputs inputs) {
+                                                       const ClipGeometry& clip, RsInputs inputs,
+                                                       Logger logger) {
   if (Status ok = Validate(options); !ok) {
     return Propagate(std::move(ok.error()));
   }
   if (Status ok = WhatIsKnown(options, clip, inputs).camera.Validate(); !ok) {
     return Propagate(std::move(ok.error()), "camera");
   }
-  return std::unique_ptr<Calibrator>(
-      new Calibrator(std::make_unique<Impl>(options, clip, std::move(inputs))));
+  return std::unique_ptr<Calibrator>(new Calibrator(std::make_unique<Impl>(
+      options, clip, std::move(inputs), logger ? std::move(logger) : SilentLogger())));
 }
 
 Status Calibrator::PushFrame(const FrameView& frame, double time_s) {
   Impl& s = *impl_;
-  const auto observation = ObserveFrame(s.tracker, frame, s.num_frames, time_s);
-  if (!observation) {
-    return Propagate(observation.error());
+  auto observed = ObserveFrame(s.tracker, frame, s.num_frames, time_s);
+  if (!observed) {
+    return Propagate(std::move(observed.error()));
   }
-  s.observer.Push(observation->tracks);
+  s.observer.Push(observed->observation.tracks, std::move(observed->proxy));
   ++s.num_frames;
   return {};
 }
@@ -154,6 +155,8 @@ Result<CalibrationReport> Calibrator::Finish() {
   if (!calibration.curve.empty()) {
     report.curves.push_back({"tracks", calibration.curve});
   }
+  report.tracks_readout_s = calibration.tracks_readout_s;
+  report.pictures = evidence.pictures;
   report.readout_s =
       known.camera.readout_s ? Given(*known.camera.readout_s) : ReadoutFromTracks(calibration);
   report.focal_px =

@@ -49,6 +49,9 @@ struct CalibrationReport {
   std::size_t num_stretches = 0;  // of the clip, that the tracks' word rests on
   double parallax_px = 0.0;       // see stabilizer::ClipCalibration
   std::vector<EvidenceCurve> curves;
+  // What each source says of the readout by itself; empty where it was not asked or has no answer.
+  std::optional<stabilizer::Estimate> tracks_readout_s;
+  std::optional<PictureReadout> pictures;
   // Only with a gyro log: t_video = t_gyro + offset. Not trusted: the log does not fit, for the
   // reason given, and readout and focal length are the tracks'.
   std::optional<CalibratedValue> gyro_offset_s;
@@ -61,7 +64,7 @@ class Calibrator {
   // Of `options`, those that say what is known already are heeded. Errors: kInvalidArgument.
   [[nodiscard]] static Result<std::unique_ptr<Calibrator>> Create(const StabilizeOptions& options,
                                                                   const ClipGeometry& clip,
-                                                                  RsInputs inputs);
+                                                                  RsInputs inputs, Logger logger);
   ~Calibrator();
   Calibrator(const Calibrator&) = delete;
   Calibrator& operator=(const Calibrator&) = delete;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stabilizer/pipeline/clip_observer.h"
 
+#include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "stabilizer/track_cells.h"
 
@@ -28,18 +30,46 @@ PointTracks Thin(const PointTracks& tracks) {
 }  // namespace
 
 ClipObserver::ClipObserver(const StabilizeOptions& options, const ClipGeometry& clip,
-                           const RsInputs& inputs)
-    : lens_(KnownLens(options, clip, inputs)),
-      calibrator_(CalibrationOptions(options, clip, inputs)) {}
+                           const RsInputs& inputs, Logger logger)
+    : options_(options),
+      frame_interval_s_(1.0 / clip.frames_per_second),
+      logger_(std::move(logger)),
+      lens_(KnownLens(options, clip, inputs)),
+      calibrator_(CalibrationOptions(options, clip, inputs)) {
+  if (NeedsPictures(options, inputs)) {
+    pictures_.emplace();
+  }
+}
 
-void ClipObserver::Push(const PointTracks& tracks) {
+void ClipObserver::Push(const PointTracks& tracks, stabilizer::GrayImage picture) {
   if (num_frames_ > 0 && num_frames_ < kMaxSyncFrames) {
     sync_tracks_.push_back(Thin(tracks));
   }
   ++num_frames_;
-  calibrator_.Push(stabilizer::SummarizeTracks(tracks, lens_ ? &*lens_ : nullptr));
+  auto pair = stabilizer::SummarizeTracks(tracks, lens_ ? &*lens_ : nullptr);
+  if (pictures_) {
+    pictures_->Push(std::move(picture), pair.cells.empty()
+                                            ? std::nullopt
+                                            : std::optional<Eigen::Vector2d>(pair.affine.col(0)));
+  }
+  calibrator_.Push(std::move(pair));
 }
 
-ClipEvidence ClipObserver::Conclude() { return {sync_tracks_, calibrator_.Calibrate()}; }
+ClipEvidence ClipObserver::Conclude() {
+  ClipEvidence evidence{sync_tracks_, {}, {}};
+  std::optional<stabilizer::Estimate> opinion;
+  if (pictures_) {
+    auto answer = AskPictures(options_, *pictures_, frame_interval_s_);
+    if (!answer) {
+      logger_->info("single pictures are not asked for the readout time: {}",
+                    answer.error().message);
+    } else if (std::isfinite(answer->sigma_s)) {
+      opinion = {answer->readout_s, answer->sigma_s, true};
+      evidence.pictures = std::move(*answer);
+    }
+  }
+  evidence.calibration = calibrator_.Calibrate(opinion);
+  return evidence;
+}
 
 }  // namespace rsstab::pipeline

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "igf/base/camera.h"
+#include "igf/base/log.h"
 #include "igf/base/point_tracks.h"
 #include "stabilizer/clip_calibration.h"
 #include "stabilizer/pipeline/rs_source_selection.h"
@@ -17,19 +18,24 @@ namespace rsstab::pipeline {
 // bounded. In order, not thread safe.
 class ClipObserver {
  public:
-  ClipObserver(const StabilizeOptions& options, const ClipGeometry& clip, const RsInputs& inputs);
+  ClipObserver(const StabilizeOptions& options, const ClipGeometry& clip, const RsInputs& inputs,
+               Logger logger);
 
-  // The next frame's tracks, from the frame before it to it; the first frame's are empty.
-  void Push(const PointTracks& tracks);
+  // The next frame: its tracks from the frame before it (empty for the first), and its picture.
+  void Push(const PointTracks& tracks, stabilizer::GrayImage picture);
 
   // What was gathered so far; lives as long as the observer and until the next Push().
   [[nodiscard]] ClipEvidence Conclude();
 
  private:
+  StabilizeOptions options_;
+  double frame_interval_s_;
+  Logger logger_;
   std::int64_t num_frames_ = 0;
   std::vector<PointTracks> sync_tracks_;
   std::optional<Camera> lens_;  // taken out of the tracks before they calibrate
   stabilizer::ClipCalibrator calibrator_;
+  std::optional<ReadoutPictures> pictures_;  // when single pictures are to be asked
 };
 
 }  // namespace rsstab::pipeline

@@ -5,8 +5,8 @@
 
 namespace rsstab::pipeline {
 
-Result<FrameObservation> ObserveFrame(stabilizer::FeatureTracker& tracker, const FrameView& frame,
-                                      std::int64_t pts, double time_s) {
+Result<ObservedFrame> ObserveFrame(stabilizer::FeatureTracker& tracker, const FrameView& frame,
+                                   std::int64_t pts, double time_s) {
   auto proxy = stabilizer::MakeLumaProxy(frame);
   if (!proxy) {
     return Propagate(std::move(proxy.error()));
@@ -21,7 +21,7 @@ Result<FrameObservation> ObserveFrame(stabilizer::FeatureTracker& tracker, const
   observation.fingerprint = stabilizer::FingerprintOf(*proxy);
   observation.attempted_points = tracked->attempted;
   observation.tracks = std::move(tracked->tracks);
-  return observation;
+  return ObservedFrame{std::move(observation), std::move(*proxy)};
 }
 
 }  // namespace rsstab::pipeline

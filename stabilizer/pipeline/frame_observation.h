@@ -21,11 +21,16 @@ struct FrameObservation {
   PointTracks tracks;        // previous frame -> this one, proxy pixels
 };
 
+struct ObservedFrame {
+  FrameObservation observation;
+  stabilizer::GrayImage proxy;  // for those who need to see more of it
+};
+
 // Looks at the next frame of a clip. Errors: those of stabilizer::MakeLumaProxy and
 // stabilizer::FeatureTracker::Push.
-[[nodiscard]] Result<FrameObservation> ObserveFrame(stabilizer::FeatureTracker& tracker,
-                                                    const FrameView& frame, std::int64_t pts,
-                                                    double time_s);
+[[nodiscard]] Result<ObservedFrame> ObserveFrame(stabilizer::FeatureTracker& tracker,
+                                                 const FrameView& frame, std::int64_t pts,
+                                                 double time_s);
 
 }  // namespace rsstab::pipeline
 

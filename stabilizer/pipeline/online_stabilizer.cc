@@ -112,17 +112,18 @@ Result<std::unique_ptr<OnlineStabilizer>> OnlineStabilizer::Create(const OnlineO
 Status OnlineStabilizer::Push(const Frame& frame, std::int64_t pts, double time_s) {
   Impl& s = *impl_;
   const FrameView picture = frame.View();
-  auto observation = ObserveFrame(s.tracker, picture, pts, time_s);
-  if (!observation) {
-    return Propagate(std::move(observation.error()));
+  auto observed = ObserveFrame(s.tracker, picture, pts, time_s);
+  if (!observed) {
+    return Propagate(std::move(observed.error()));
   }
+  FrameObservation& observation = observed->observation;
   Status status;
   if (s.rs.delayed == nullptr) {
-    status = s.Stage(*observation, &picture);
+    status = s.Stage(observation, &picture);
   } else {
-    status = s.rs.delayed->Observe(*observation, &picture);
+    status = s.rs.delayed->Observe(observation, &picture);
     if (status) {
-      s.observed.push_back(std::move(*observation));
+      s.observed.push_back(std::move(observation));
       status = s.StageDecided();
     }
   }

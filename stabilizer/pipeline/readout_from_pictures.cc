@@ -20,7 +20,7 @@ constexpr std::int64_t kMinSpacing = 4;
 constexpr double kMinSpeed = 2.0 / 640.0;
 constexpr std::size_t kMinPictures = 6;
 // Candidates, frame intervals: the answers are a straight line in them.
-constexpr std::array<double, 3> kCandidates = {-0.5, 0.25, 1.0};
+constexpr std::array<double, 2> kCandidates = {-0.5, 1.0};
 // One step and an antithetic pair of samples give the best mean for the time.
 constexpr int kSteps = 1;
 constexpr int kSamples = 2;
@@ -93,8 +93,9 @@ struct Sums {
   Eigen::Vector2d v = Eigen::Vector2d::Zero();
   double n = 0.0;
   std::array<double, kCandidates.size()> vs{};
-  std::array<Eigen::Vector2d, kCandidates.size()> s{
-      Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
+  std::array<Eigen::Vector2d, kCandidates.size()> s;
+
+  Sums() { s.fill(Eigen::Vector2d::Zero()); }
 
   void Add(const Sums& other, double sign) {
     vv += sign * other.vv;
@@ -137,29 +138,40 @@ Line LineThrough(const std::array<double, kCandidates.size()>& slopes) {
 
 }  // namespace
 
-void ReadoutPictures::Offer(const stabilizer::GrayImage& picture, const Eigen::Vector2d& velocity) {
-  const std::int64_t frame = num_frames_++;
-  const double speed = velocity.norm();
+void ReadoutPictures::Push(stabilizer::GrayImage picture,
+                           const std::optional<Eigen::Vector2d>& shift) {
+  // While a frame is read out the scene moves at the mean of the speeds before and after it.
+  if (last_ && shift) {
+    last_->velocity = 0.5 * (last_->velocity + *shift);
+    Offer(std::move(*last_));
+  }
+  last_.reset();
+  if (shift) {
+    last_ = Kept{num_frames_, *shift, std::move(picture)};
+  }
+  ++num_frames_;
+}
+
+void ReadoutPictures::Offer(Kept candidate) {
+  const double speed = candidate.velocity.norm();
   if (!(speed >= kMinSpeed)) {
     return;
   }
   const auto near = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) {
-    return frame - kept.frame < kMinSpacing;
+    return candidate.frame - kept.frame < kMinSpacing;
   });
-  if (near != kept_.end()) {
-    if (near->velocity.norm() >= speed) {
+  const auto replaced = near != kept_.end()            ? near
+                        : kept_.size() == kMaxPictures ? kept_.end() - 1
+                                                       : kept_.end();
+  if (replaced != kept_.end()) {
+    if (replaced->velocity.norm() >= speed) {
       return;
     }
-    kept_.erase(near);
-  } else if (kept_.size() == kMaxPictures) {
-    if (kept_.back().velocity.norm() >= speed) {
-      return;
-    }
-    kept_.pop_back();
+    kept_.erase(replaced);
   }
   const auto place = std::find_if(kept_.begin(), kept_.end(),
                                   [&](const Kept& kept) { return kept.velocity.norm() < speed; });
-  kept_.insert(place, {frame, velocity, picture});
+  kept_.insert(place, std::move(candidate));
 }
 
 Result<PictureReadout> ReadoutPictures::Ask(rsdiff::SingleImageEstimator& estimator,

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "igf/base/result.h"
@@ -37,9 +38,11 @@ struct PictureReadout {
 // small pictures: the fastest of the clip, some frames apart. In order, not thread safe.
 class ReadoutPictures {
  public:
-  // The next frame's luma proxy, and how its scene moves across the picture, picture widths per
-  // frame (x right, y down).
-  void Offer(const stabilizer::GrayImage& picture, const Eigen::Vector2d& velocity);
+  // The next frame's luma proxy, and how its scene moved across the picture since the one before,
+  // picture widths (x right, y down); empty for the first frame and where that is not known.
+  void Push(stabilizer::GrayImage picture, const std::optional<Eigen::Vector2d>& shift);
+
+  [[nodiscard]] std::size_t size() const { return kept_.size(); }
 
   // Asks the model about every picture kept, corrected with several candidates.
   // Errors: those of SingleImageEstimator::Estimate.
@@ -52,8 +55,11 @@ class ReadoutPictures {
     Eigen::Vector2d velocity;
     stabilizer::GrayImage picture;
   };
+  void Offer(Kept candidate);
+
   std::int64_t num_frames_ = 0;
-  std::vector<Kept> kept_;  // fastest first
+  std::optional<Kept> last_;  // its velocity is that of the way to it
+  std::vector<Kept> kept_;    // fastest first
 };
 
 }  // namespace rsstab::pipeline

@@ -13,6 +13,7 @@
 #include "igf/gyro_log.h"
 #include "stabilizer/clip_calibration.h"
 #include "stabilizer/pipeline/motion_stage.h"
+#include "stabilizer/pipeline/readout_from_pictures.h"
 #include "stabilizer/pipeline/stabilize_options.h"
 
 namespace rsstab::pipeline {
@@ -31,11 +32,21 @@ struct RsInputs {
 struct ClipEvidence {
   std::span<const PointTracks> tracks;  // of consecutive frames; may be thinned out
   std::optional<stabilizer::ClipCalibration> calibration;
+  std::optional<PictureReadout> pictures;  // when they were asked and answered
 };
 
 // True when the choice can only be made once the clip was seen (a gyro log must be brought into
 // step with the picture, the readout time must be found).
 [[nodiscard]] bool NeedsTracks(const StabilizeOptions& options, const RsInputs& inputs);
+
+// True when single pictures of the clip should be asked for its readout time.
+[[nodiscard]] bool NeedsPictures(const StabilizeOptions& options, const RsInputs& inputs);
+
+// Asks the single-image model that `options` name. Errors: those of rsdiff::FindModel,
+// rsdiff::SingleImageEstimator::Load and ReadoutPictures::Ask.
+[[nodiscard]] Result<PictureReadout> AskPictures(const StabilizeOptions& options,
+                                                 const ReadoutPictures& pictures,
+                                                 double frame_interval_s);
 
 // What the clip's calibration has to find out, from what is known already.
 [[nodiscard]] stabilizer::ClipCalibrationOptions CalibrationOptions(const StabilizeOptions& options,
