@@ -18,6 +18,11 @@ constexpr int kIterations = 4;
 constexpr double kRepeatMotion = 0.01 / kWidth;
 // A camera on a stand is not a chain of repeats.
 constexpr int kMaxRepeats = 3;
+// Pictures that follow each other more quickly carry wrong timestamps, frame intervals: recorders
+// crowd the first ones together. What moved between them took a whole interval.
+constexpr double kMinInterval = 0.4;
+// Longer pauses tell nothing about the motion on either side.
+constexpr double kMaxInterval = 5.0;
 
 bool IsRepeat(const FramePairCells& pair) {
   return !pair.cells.empty() &&
@@ -29,17 +34,24 @@ bool IsRepeat(const FramePairCells& pair) {
 }  // namespace
 
 void RsMotionFusion::Push(double time_s, FramePairCells pair) {
-  if (pair.cells.empty() || !(time_s > content_time_s_)) {
+  const bool time_runs = time_s > last_time_s_;
+  last_time_s_ = time_s;
+  const double interval_s = time_s + clock_offset_s_ - content_time_s_;
+  if (pair.cells.empty() || !time_runs || interval_s > kMaxInterval * model_.frame_interval_s) {
     EndPart();
+    clock_offset_s_ = 0.0;
     content_time_s_ = time_s;
     num_repeats_ = 0;
   } else if (IsRepeat(pair) && num_repeats_ < kMaxRepeats) {
     ++num_repeats_;
   } else {
+    if (interval_s < kMinInterval * model_.frame_interval_s) {
+      clock_offset_s_ += model_.frame_interval_s - interval_s;
+    }
     pair.from_time_s = content_time_s_;
-    pair.to_time_s = time_s;
+    pair.to_time_s = time_s + clock_offset_s_;
+    content_time_s_ = pair.to_time_s;
     pending_.push_back(std::move(pair));
-    content_time_s_ = time_s;
     num_repeats_ = 0;
   }
   waiting_.push_back({content_time_s_, part_});

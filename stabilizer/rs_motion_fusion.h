@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -16,7 +17,9 @@ namespace rsstab::stabilizer {
 
 // How the camera turned around one frame.
 struct FusedFrame {
-  // When its middle row was exposed: the frame's time, or that of the frame that it repeats.
+  // When its middle row was exposed, on the clock of `spline`: the frame's time, or that of the
+  // frame that it repeats. Where timestamps are damaged (frames crowded together), a clock that
+  // runs evenly from there to the end of the part.
   double time_s = 0.0;
   // Frames of the same part share one world frame; a cut begins another part.
   std::int64_t part = 0;
@@ -33,7 +36,7 @@ class RsMotionFusion {
   explicit RsMotionFusion(const RsMotionModel& model) : model_(model) {}
 
   // The next frame, with its tracks from the one before. A pair without cells (the first frame, a
-  // cut) begins another part.
+  // cut), a long pause and a clock that does not advance begin another part.
   void Push(double time_s, FramePairCells pair);
   // No more frames will come.
   void Finish();
@@ -53,7 +56,9 @@ class RsMotionFusion {
 
   RsMotionModel model_;
   std::int64_t part_ = 0;
-  double content_time_s_ = 0.0;  // when the last frame's picture was taken
+  double last_time_s_ = -std::numeric_limits<double>::infinity();
+  double clock_offset_s_ = 0.0;  // of the splines' clock against the frames'
+  double content_time_s_ = 0.0;  // when the last frame's picture was taken, splines' clock
   int num_repeats_ = 0;
   std::vector<FramePairCells> pending_;
   SplineStretch stretch_;

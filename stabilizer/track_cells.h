@@ -28,7 +28,7 @@ struct FramePairCells {
   double to_time_s = 0.0;
   // Robust affine motion: to - from = affine * (1, x, y) in picture widths.
   Eigen::Matrix<double, 2, 3> affine = Eigen::Matrix<double, 2, 3>::Zero();
-  double scatter = 0.0;  // typical distance of a track from it, picture widths
+  double scatter = 0.0;  // typical distance of a track from a smooth motion, picture widths
   int num_inliers = 0;
   std::vector<TrackCell> cells;  // empty: the pair says nothing (a cut, a blank picture)
 };

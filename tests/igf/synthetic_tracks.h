@@ -48,41 +48,45 @@ inline std::optional<Eigen::Vector2d> SeenAt(const Eigen::Vector3d& direction_in
   return inside ? pixel : std::nullopt;
 }
 
-// Row-exact matches of random directions between consecutive frames whose middle rows are exposed
-// at i / frame_rate, 0 <= i < duration * frame_rate.
+// Row-exact matches of random directions between two frames whose middle rows are exposed at the
+// given times.
+inline PointTracks MakePairTracks(const Camera& camera, const OrientationTrack& track,
+                                  double from_time_s, double to_time_s,
+                                  const SyntheticTrackOptions& options, std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  std::normal_distribution<double> noise(0.0, options.noise_px);
+  PointTracks pair{camera.width, camera.height, from_time_s, to_time_s, {}};
+  for (int k = 0; k < options.matches_per_pair; ++k) {
+    const Eigen::Vector2d pixel(unit(random) * (camera.width - 1),
+                                unit(random) * (camera.height - 1));
+    const Eigen::Vector3d direction =
+        track.CameraFromWorld(from_time_s)->conjugate() * *camera.UnprojectPixel(pixel);
+    const auto from = SeenAt(direction, camera, track, from_time_s, options.readout_s);
+    auto to = SeenAt(direction, camera, track, to_time_s, options.readout_s);
+    if (!from || !to) {
+      continue;
+    }
+    if (unit(random) < options.outlier_ratio) {
+      *to +=
+          options.outlier_px * Eigen::Vector2d(2.0 * unit(random) - 1.0, 2.0 * unit(random) - 1.0);
+    }
+    const Eigen::Vector2d from_error(noise(random), noise(random));
+    const Eigen::Vector2d to_error(noise(random), noise(random));
+    pair.matches.push_back({(*from + from_error).cast<float>(), (*to + to_error).cast<float>()});
+  }
+  return pair;
+}
+
+// The same for consecutive frames at i / frame_rate, 0 <= i < duration * frame_rate.
 inline std::vector<PointTracks> MakeTracks(const Camera& camera, const OrientationTrack& track,
                                            double duration_s,
                                            const SyntheticTrackOptions& options) {
   std::mt19937 random(options.seed);
-  std::uniform_real_distribution<double> unit(0.0, 1.0);
-  std::normal_distribution<double> noise(0.0, options.noise_px);
   std::vector<PointTracks> result;
   const int frames = static_cast<int>(duration_s * options.frame_rate_hz);
   for (int i = 0; i + 1 < frames; ++i) {
-    PointTracks pair{camera.width,
-                     camera.height,
-                     i / options.frame_rate_hz,
-                     (i + 1) / options.frame_rate_hz,
-                     {}};
-    for (int k = 0; k < options.matches_per_pair; ++k) {
-      const Eigen::Vector2d pixel(unit(random) * (camera.width - 1),
-                                  unit(random) * (camera.height - 1));
-      const Eigen::Vector3d direction =
-          track.CameraFromWorld(pair.from_time_s)->conjugate() * *camera.UnprojectPixel(pixel);
-      const auto from = SeenAt(direction, camera, track, pair.from_time_s, options.readout_s);
-      auto to = SeenAt(direction, camera, track, pair.to_time_s, options.readout_s);
-      if (!from || !to) {
-        continue;
-      }
-      if (unit(random) < options.outlier_ratio) {
-        *to += options.outlier_px *
-               Eigen::Vector2d(2.0 * unit(random) - 1.0, 2.0 * unit(random) - 1.0);
-      }
-      const Eigen::Vector2d from_error(noise(random), noise(random));
-      const Eigen::Vector2d to_error(noise(random), noise(random));
-      pair.matches.push_back({(*from + from_error).cast<float>(), (*to + to_error).cast<float>()});
-    }
-    result.push_back(std::move(pair));
+    result.push_back(MakePairTracks(camera, track, i / options.frame_rate_hz,
+                                    (i + 1) / options.frame_rate_hz, options, random));
   }
   return result;
 }

@@ -180,6 +180,51 @@ TEST(MotionStage, FollowsTheSensorWhereThereAreNoTracks) {
   EXPECT_LT(largest_out * kWidth, 0.5);
 }
 
+// The same source, but it answers for a frame only when it has been shown `kDelay` more.
+class LateSkewSource final : public RsMotionSource {
+ public:
+  std::string Name() const override { return "late"; }
+  bool NeedsImage() const override { return false; }
+  void Observe(const PointTracks& tracks, double time_s) override {
+    EXPECT_EQ(tracks.matches.empty(), observed_ == 0);
+    EXPECT_DOUBLE_EQ(time_s, static_cast<double>(observed_) / 30.0);
+    ++observed_;
+  }
+  void FinishObserving() override { finished_ = true; }
+  std::int64_t NumAnswerable() const override {
+    return finished_ ? observed_ : std::max<std::int64_t>(observed_ - kDelay, 0);
+  }
+  Result<RsMotion> EstimateMotion(const FrameContext& frame) override {
+    EXPECT_EQ(frame.index, asked_++);
+    EXPECT_LT(frame.index, NumAnswerable());
+    EXPECT_DOUBLE_EQ(frame.time_s, static_cast<double>(frame.index) / 30.0);
+    return skew_.EstimateMotion(frame);
+  }
+
+ private:
+  static constexpr std::int64_t kDelay = 25;
+  SkewSource skew_;
+  std::int64_t observed_ = 0;
+  std::int64_t asked_ = 0;
+  bool finished_ = false;
+};
+
+TEST(MotionStage, ASourceThatAnswersLateGivesTheSameFrames) {
+  RsSelection at_once;
+  at_once.source = std::make_unique<SkewSource>();
+  RsSelection late;
+  late.source = std::make_unique<LateSkewSource>();
+  const auto expected = AnalyzeSkewed(at_once);
+  const auto frames = AnalyzeSkewed(late);
+  ASSERT_EQ(frames.size(), expected.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    EXPECT_EQ(frames[i].pts, expected[i].pts);
+    EXPECT_EQ(frames[i].rectified_from_output, expected[i].rectified_from_output);
+    EXPECT_EQ(frames[i].rs_field.rows(), expected[i].rs_field.rows());
+    EXPECT_EQ(frames[i].crop_ratio, expected[i].crop_ratio);
+  }
+}
+
 TEST(MotionStage, RefusesImpossibleClips) {
   RsSelection selection;
   EXPECT_FALSE(MotionStage::Create({}, {0, 360, 30.0}, &selection, SilentLogger()));
