@@ -163,11 +163,13 @@ Result<MethodFigures> ScoreMethod(const LabelledPicture& picture, const MethodIn
 // A clip's pictures, each read once, with a window of one before and one after.
 class ClipWindow {
  public:
-  ClipWindow(const PictureSet& set, const PictureClip& clip) : set_(set), clip_(clip) {
-    after_ = Load(0);
+  // `first`: the index that Advance is called with first.
+  ClipWindow(const PictureSet& set, const PictureClip& clip, std::size_t first = 0)
+      : set_(set), clip_(clip) {
+    after_ = Load(first);
   }
 
-  // Moves on to the picture of `index`, which counts up from 0.
+  // Moves on to the picture of `index`, which counts up.
   void Advance(std::size_t index) {
     before_ = std::move(now_);
     now_ = std::move(after_);
@@ -201,6 +203,32 @@ class ClipWindow {
   Slot after_;
 };
 
+// What a method is given of the picture in the middle of a window, which must be there.
+class WindowInput {
+ public:
+  WindowInput(const ClipWindow& window, const std::string& name, std::uint64_t seed)
+      : previous_(window.Before()), next_(window.After()) {
+    const LabelledPicture& picture = *window.Now();
+    input_.rs = picture.rs.View();
+    input_.seed = MixBits(seed ^ HashOfName(name));
+    input_.camera = picture.camera ? &*picture.camera : nullptr;
+    input_.gyro = picture.gyro ? &*picture.gyro : nullptr;
+    input_.previous = previous_ ? &*previous_ : nullptr;
+    input_.next = next_ ? &*next_ : nullptr;
+    input_.frame_interval_s = picture.frame_interval_s;
+    input_.reference_row = picture.reference_row;
+  }
+  WindowInput(const WindowInput&) = delete;
+  WindowInput& operator=(const WindowInput&) = delete;
+
+  [[nodiscard]] const MethodInput& Get() const { return input_; }
+
+ private:
+  std::optional<FrameView> previous_;
+  std::optional<FrameView> next_;
+  MethodInput input_;
+};
+
 Result<PictureRecord> JudgePicture(const ClipWindow& window, const std::string& name,
                                    std::uint64_t seed, MethodSet& methods,
                                    std::vector<std::optional<ErrorField>>& last,
@@ -209,17 +237,7 @@ Result<PictureRecord> JudgePicture(const ClipWindow& window, const std::string& 
     return Propagate(window.Now().error());
   }
   const LabelledPicture& picture = *window.Now();
-  const auto previous = window.Before();
-  const auto next = window.After();
-  MethodInput input;
-  input.rs = picture.rs.View();
-  input.seed = MixBits(seed ^ HashOfName(name));
-  input.camera = picture.camera ? &*picture.camera : nullptr;
-  input.gyro = picture.gyro ? &*picture.gyro : nullptr;
-  input.previous = previous ? &*previous : nullptr;
-  input.next = next ? &*next : nullptr;
-  input.frame_interval_s = picture.frame_interval_s;
-  input.reference_row = picture.reference_row;
+  const WindowInput input(window, name, seed);
   PictureRecord record;
   record.name = name;
   record.split = picture.split;
@@ -228,7 +246,7 @@ Result<PictureRecord> JudgePicture(const ClipWindow& window, const std::string& 
   record.width = picture.rs.width;
   record.height = picture.rs.height;
   for (std::size_t m = 0; m < methods.methods.size(); ++m) {
-    auto figures = ScoreMethod(picture, input, *methods.methods[m], last[m], workers);
+    auto figures = ScoreMethod(picture, input.Get(), *methods.methods[m], last[m], workers);
     if (!figures) {
       return Propagate(figures.error(), name);
     }
@@ -299,6 +317,41 @@ Status RunPictureProtocol(const PictureSet& set, const PictureOptions& options,
         return go_on && !stopped_by;
       });
   return stopped_by ? Propagate(*stopped_by) : status;
+}
+
+Result<PictureInspection> InspectPicture(const PictureSet& set, const std::string& clip,
+                                         const std::string& picture, std::uint64_t seed,
+                                         MethodSet& methods) {
+  for (const PictureClip& candidate : set.Clips()) {
+    const auto& names = candidate.pictures;
+    const auto found = std::find(names.begin(), names.end(), picture);
+    if (candidate.name != clip || found == names.end()) {
+      continue;
+    }
+    const auto index = static_cast<std::size_t>(found - names.begin());
+    ClipWindow window(set, candidate, index == 0 ? 0 : index - 1);
+    for (std::size_t i = index == 0 ? 0 : index - 1; i <= index; ++i) {
+      window.Advance(i);
+    }
+    if (!window.Now()) {
+      return Propagate(window.Now().error());
+    }
+    PictureInspection inspection;
+    const WindowInput input(window, picture, seed);
+    for (const auto& method : methods.methods) {
+      MethodFigures figures;
+      figures.method = method->Name();
+      auto field = AskMethod(*window.Now(), input.Get(), *method, figures);
+      if (field) {
+        inspection.answers.push_back({figures.method, std::move(*field)});
+      } else if (field.error().code != ErrorCode::kUnsupported) {
+        return Propagate(field.error(), picture);
+      }
+    }
+    inspection.picture = *window.Now();
+    return inspection;
+  }
+  return Fail(ErrorCode::kNotFound, "{}: the data set has no such picture", picture);
 }
 
 }  // namespace rsstab::evaluation

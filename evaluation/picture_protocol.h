@@ -81,6 +81,24 @@ struct PictureOptions {
                                         const std::function<Status(ClipResult result)>& done,
                                         const EvaluationProgress& progress = {});
 
+// What a method says of one picture.
+struct PictureAnswer {
+  std::string method;
+  MotionField field;  // told from the picture's reference row; zero where the method declined
+};
+struct PictureInspection {
+  LabelledPicture picture;
+  std::vector<PictureAnswer> answers;  // methods that cannot be asked here are missing
+};
+
+// Asks the methods about one picture of a clip, exactly as RunPictureProtocol does with this seed,
+// for those who want to see more than figures.
+// Errors: kNotFound for a picture that the set does not have; those of the set and the methods.
+[[nodiscard]] Result<PictureInspection> InspectPicture(const PictureSet& set,
+                                                       const std::string& clip,
+                                                       const std::string& picture,
+                                                       std::uint64_t seed, MethodSet& methods);
+
 }  // namespace rsstab::evaluation
 
 #endif  // RSSTAB_EVALUATION_PICTURE_PROTOCOL_H_

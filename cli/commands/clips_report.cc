@@ -209,6 +209,29 @@ std::string MeansText(const ClipsReport& report, int name_width) {
   return text;
 }
 
+report::Table EmptyTable(std::string caption, ClipKind kind) {
+  report::Table table;
+  table.caption = std::move(caption);
+  table.headings = {"method"};
+  for (const Figure& figure : Figures()) {
+    if (IsInTable(figure, kind)) {
+      table.headings.push_back(figure.title);
+    }
+  }
+  return table;
+}
+
+void AddRow(const std::string& name, ClipKind kind,
+            const std::function<double(const Figure&)>& value, report::Table& table) {
+  std::vector<report::TableCell> row = {{name}};
+  for (const Figure& figure : Figures()) {
+    if (IsInTable(figure, kind)) {
+      row.push_back({Cell(value(figure), 0, figure.digits)});
+    }
+  }
+  table.rows.push_back(std::move(row));
+}
+
 Json FiguresJson(const std::function<double(const Figure&)>& value) {
   Json json = Json::object();
   for (const Figure& figure : Figures()) {
@@ -235,6 +258,36 @@ Json RunJson(const ClipRun& run) {
 }
 
 }  // namespace
+
+std::vector<report::Table> FigureTables(const ClipsReport& report) {
+  std::vector<report::Table> tables;
+  for (const ClipKind kind : kKinds) {
+    const auto clips = std::count_if(report.clips.begin(), report.clips.end(),
+                                     [&](const ClipRecord& clip) { return clip.kind == kind; });
+    if (clips < 2) {
+      continue;
+    }
+    report::Table table =
+        EmptyTable(fmt::format("Mean of {} {} clips", clips, ClipKindName(kind)), kind);
+    for (const std::string& method : report.methods) {
+      if (const auto runs = RunsOf(report, method, kind); !runs.empty()) {
+        AddRow(
+            method, kind, [&](const Figure& figure) { return MeanOf(runs, figure); }, table);
+      }
+    }
+    tables.push_back(std::move(table));
+  }
+  for (const ClipRecord& clip : report.clips) {
+    report::Table table =
+        EmptyTable(fmt::format("{}, {}", clip.name, ClipKindName(clip.kind)), clip.kind);
+    for (const ClipRun& run : clip.runs) {
+      AddRow(
+          run.method, clip.kind, [&](const Figure& figure) { return figure.get(run); }, table);
+    }
+    tables.push_back(std::move(table));
+  }
+  return tables;
+}
 
 std::string FormatText(const ClipsReport& report) {
   const int name_width = NameWidth(report);

@@ -2,13 +2,18 @@
 #include "cli/commands/evaluate.h"
 
 #include <filesystem>
+#include <functional>
 #include <opencv2/core/utility.hpp>
+#include <optional>
 #include <system_error>
 
 #include "cli/commands/evaluate_clips.h"
 #include "cli/commands/evaluate_methods.h"
 #include "cli/commands/evaluate_pictures.h"
 #include "cli/commands/evaluate_synthetic.h"
+#include "cli/pages/evaluation_page.h"
+#include "cli/pages/report_file.h"
+#include "cli/stage_times.h"
 #include "igf/base/parallel_for.h"
 #include "igf/base/whole_file.h"
 
@@ -28,9 +33,40 @@ Status CheckOutputFolders(const EvaluateOptions& options) {
   return {};
 }
 
-// Table to `out`, the other forms to their files.
+// Makes the page of a report, given how long its figures took.
 template <typename Report>
-Status WriteReport(const Report& report, const EvaluateOptions& options, std::ostream& out) {
+using PageMaker =
+    std::function<Result<std::string>(const Report& report, const std::vector<StageTime>& stages)>;
+
+// Lets `evaluate` make the report, and writes it: table to `out`, the other forms to their files.
+template <typename Report>
+Status WriteReport(const EvaluateOptions& options, std::ostream& out,
+                   const std::function<Result<Report>()>& evaluate,
+                   const PageMaker<Report>& make_page) {
+  std::optional<ReportFile> file;
+  if (!options.report.empty()) {
+    auto opened = ReportFile::Open(options.report, options.overwrite,
+                                   {options.csv, options.json, options.state});
+    if (!opened) {
+      return Propagate(opened.error());
+    }
+    file.emplace(std::move(*opened));
+  }
+  StageTimes times;
+  const Result<Report> made = times.Measure("Evaluate", evaluate);
+  if (!made) {
+    return Propagate(made.error());
+  }
+  const Report& report = *made;
+  if (file) {
+    const auto page = make_page(report, times.stages());
+    if (!page) {
+      return Propagate(page.error(), options.report);
+    }
+    if (Status written = file->Write(*page); !written) {
+      return written;
+    }
+  }
   out << FormatText(report);
   if (!options.csv.empty()) {
     if (Status status = WriteWholeFile(options.csv, FormatCsv(report)); !status) {
@@ -51,8 +87,9 @@ Status RunEvaluate(const EvaluateOptions& options, const Logger& logger, std::os
     return status;
   }
   if (options.protocol == EvaluationProtocol::kClips || !options.clips.empty()) {
-    const auto report = EvaluateClips(options, logger, progress);
-    return report ? WriteReport(*report, options, out) : Propagate(report.error());
+    return WriteReport<ClipsReport>(
+        options, out, [&] { return EvaluateClips(options, logger, progress); },
+        [](const auto& report, const auto& stages) { return MakeEvaluationPage(report, stages); });
   }
   if (ResolveThreadCount(options.jobs) > 1) {
     // The photographs are what runs in parallel; OpenCV's own threads would only get in the way.
@@ -68,11 +105,15 @@ Status RunEvaluate(const EvaluateOptions& options, const Logger& logger, std::os
     return Propagate(factory.error());
   }
   if (options.protocol != EvaluationProtocol::kSyntheticVal) {
-    const auto report = EvaluatePictures(chosen, *factory, logger, progress);
-    return report ? WriteReport(*report, options, out) : Propagate(report.error());
+    return WriteReport<PictureReport>(
+        options, out, [&] { return EvaluatePictures(chosen, *factory, logger, progress); },
+        [&](const auto& report, const auto& stages) {
+          return MakeEvaluationPage(report, chosen, *factory, stages);
+        });
   }
-  const auto report = EvaluateSynthetic(options, *factory, logger, progress);
-  return report ? WriteReport(*report, options, out) : Propagate(report.error());
+  return WriteReport<SyntheticReport>(
+      options, out, [&] { return EvaluateSynthetic(options, *factory, logger, progress); },
+      [](const auto& report, const auto& stages) { return MakeEvaluationPage(report, stages); });
 }
 
 }  // namespace rsstab::cli

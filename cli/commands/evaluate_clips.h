@@ -11,6 +11,7 @@
 #include "cli/commands/compare.h"
 #include "cli/commands/evaluate_options.h"
 #include "cli/commands/evaluation_header.h"
+#include "cli/report/html_page.h"
 #include "evaluation/for_each_item.h"
 #include "evaluation/rs_field_score.h"
 #include "igf/base/log.h"
@@ -56,6 +57,10 @@ struct ClipsReport {
 [[nodiscard]] std::string FormatText(const ClipsReport& report);
 [[nodiscard]] std::string FormatJson(const ClipsReport& report);
 [[nodiscard]] std::string FormatCsv(const ClipsReport& report);
+
+// The same for a page: means over the clips of each kind, then each clip; the best figures are
+// marked nowhere, since most of them are bought with others.
+[[nodiscard]] std::vector<report::Table> FigureTables(const ClipsReport& report);
 
 // Lets every method steady every clip of the folder options.clips, one after the other, and
 // measures what comes out. Clips that cannot be used, methods that cannot run here and runs that

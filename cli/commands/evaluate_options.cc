@@ -153,6 +153,9 @@ OptionTable<Options> BuildTable() {
   add(TextOption<Options>("csv", "FILE", &Options::csv),
       "Write one line for each picture and method.");
   add(TextOption<Options>("json", "FILE", &Options::json), "Write the table's figures as JSON.");
+  add(TextOption<Options>("report", "FILE", &Options::report),
+      "Write an HTML page, all in one file, with tables, charts and some of the pictures.");
+  add(SwitchOption<Options>("overwrite", &Options::overwrite), "Replace the page if it exists.");
   add(TextOption<Options>("state", "FILE", &Options::state),
       "rs-real, pairs: keep what is done in FILE, and go on from it when the same is asked again "
       "after a stop. Without it, beside the CSV or JSON until that is written.");

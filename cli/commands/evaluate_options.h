@@ -57,10 +57,12 @@ struct EvaluateOptions {
   std::string preset = "ultrafast";
 
   std::int64_t seed = 1;
-  int jobs = 0;       // photographs at a time; 0 = one per core
-  std::string csv;    // file for one line per picture and method
-  std::string json;   // file for everything in the table
-  std::string state;  // file that a stopped run goes on from; beside csv or json unless given
+  int jobs = 0;            // photographs at a time; 0 = one per core
+  std::string csv;         // file for one line per picture and method
+  std::string json;        // file for everything in the table
+  std::string report;      // file for an HTML page
+  bool overwrite = false;  // the page may replace a file
+  std::string state;       // file that a stopped run goes on from; beside csv or json unless given
 };
 
 inline constexpr const char* kDatasetMethods =

@@ -37,18 +37,6 @@ const char* SplitName(DatasetSplit split) {
   return "all";
 }
 
-Result<std::unique_ptr<PictureSet>> OpenSet(const EvaluateOptions& options) {
-  const bool is_pairs = options.protocol == EvaluationProtocol::kPairs;
-  const std::string& folder = is_pairs ? options.pairs : options.rs_real;
-  if (folder.empty()) {
-    return Fail(ErrorCode::kInvalidArgument,
-                "--dataset {0}:FOLDER (or --pairs): the protocol {0} needs a folder to look in.",
-                is_pairs ? "pairs" : "rs-real");
-  }
-  return is_pairs ? datasets::OpenPairs(folder, options.reference_row == ReferenceRow::kFirst)
-                  : datasets::OpenRsReal(folder, SplitName(options.split));
-}
-
 // The first clips of a data set, whole ones: as many as hold the first `limit` pictures.
 class FirstPictures final : public PictureSet {
  public:
@@ -121,9 +109,21 @@ void SortAsSet(const PictureSet& set, std::vector<PictureRecord>& records) {
 
 }  // namespace
 
+Result<std::unique_ptr<evaluation::PictureSet>> OpenPictureSet(const EvaluateOptions& options) {
+  const bool is_pairs = options.protocol == EvaluationProtocol::kPairs;
+  const std::string& folder = is_pairs ? options.pairs : options.rs_real;
+  if (folder.empty()) {
+    return Fail(ErrorCode::kInvalidArgument,
+                "--dataset {0}:FOLDER (or --pairs): the protocol {0} needs a folder to look in.",
+                is_pairs ? "pairs" : "rs-real");
+  }
+  return is_pairs ? datasets::OpenPairs(folder, options.reference_row == ReferenceRow::kFirst)
+                  : datasets::OpenRsReal(folder, SplitName(options.split));
+}
+
 Result<PictureReport> EvaluatePictures(const EvaluateOptions& options, const MethodFactory& factory,
                                        const Logger& logger, const EvaluationProgress& progress) {
-  auto whole = OpenSet(options);
+  auto whole = OpenPictureSet(options);
   if (!whole) {
     return Propagate(whole.error());
   }

@@ -28,6 +28,11 @@ struct PictureReport {
 [[nodiscard]] std::string FormatJson(const PictureReport& report);
 [[nodiscard]] std::string FormatCsv(const PictureReport& report);
 
+// The data set that the options name. Errors: kInvalidArgument without a folder; those of the data
+// set.
+[[nodiscard]] Result<std::unique_ptr<evaluation::PictureSet>> OpenPictureSet(
+    const EvaluateOptions& options);
+
 // Runs the methods that `factory` makes on RS-Real or pairs, as the options say. Pictures that
 // cannot be used are named by a warning and left out. With a state file, or with CSV or JSON beside
 // which one may lie meanwhile, a stopped run goes on where it was.

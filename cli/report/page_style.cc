@@ -33,7 +33,8 @@ th,td{padding:5px 14px 5px 0;text-align:left;border-bottom:1px solid var(--grid)
 vertical-align:baseline}
 thead th{color:var(--faint);font-weight:500;font-size:13px;white-space:nowrap;
 border-bottom-color:var(--faint)}
-tbody th{font-weight:400}
+tbody th{font-weight:400;overflow-wrap:anywhere;min-width:6.5em}
+@media(max-width:640px){table{font-size:14px}th,td{padding-right:8px}}
 .note{color:var(--faint);padding-left:8px}
 @media(max-width:640px){.note{display:none}}
 .n{text-align:right;white-space:nowrap;padding-left:8px}
@@ -44,7 +45,7 @@ td.best{font-weight:650}
 gap:26px 34px;margin-top:18px}
 .charts .chart{width:100%}
 .slides{display:grid;grid-template-columns:repeat(2,minmax(0,1fr));gap:22px;margin-top:16px}
-.slides>:first-child{grid-column:1/-1}
+.slides>:first-child{grid-column:1/-1}.slides>:only-child{max-width:720px}
 @media(max-width:640px){.slides{grid-template-columns:minmax(0,1fr)}}
 figure{margin:0}
 figcaption{margin-top:6px;font-size:14px;color:var(--faint)}
@@ -64,10 +65,10 @@ color:#fff;font-size:12px;pointer-events:none}
 .stage input{position:absolute;inset:0;width:100%;height:100%;margin:0;opacity:0;
 pointer-events:none}
 .stage input:focus-visible~i:after{outline:3px solid var(--line-2)}
-.panels{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,220px),1fr));
+.panels{display:grid;grid-template-columns:repeat(auto-fit,minmax(150px,1fr));
 gap:18px 20px;margin-top:22px}
 .pairs{grid-template-columns:repeat(2,minmax(0,1fr))}
-.panels img{display:block;width:100%;height:auto;border-radius:3px}
+.panels img{box-shadow:0 0 0 1px var(--grid);display:block;width:100%;height:auto;border-radius:3px}
 .keys{display:flex;flex-wrap:wrap;gap:14px 40px;align-items:center;margin-top:14px;font-size:13px;
 color:var(--faint)}
 .keys>div{display:flex;align-items:center;gap:12px}
