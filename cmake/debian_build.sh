@@ -10,7 +10,7 @@ rsstab_build_packages=(
   libavformat-dev libavcodec-dev libavutil-dev libswscale-dev frei0r-plugins-dev
   libgtest-dev libgmock-dev)
 rsstab_check_packages=(
-  clang-format ffmpeg melt libtorch-dev libopenblas0-pthread
+  clang-format ffmpeg melt chromium chromium-driver python3-selenium libtorch-dev libopenblas0-pthread
   python3-torch python3-opencv python3-numpy python3-matplotlib)
 # For the tests that build FFmpeg from its sources (RSSTAB_TEST_FFMPEG=1).
 rsstab_ffmpeg_packages=(dpkg-dev make gcc valgrind)

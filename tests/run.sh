@@ -10,7 +10,7 @@ source cmake/debian_build.sh
 
 # What handles foreign bytes, raw pixels and threads; numerics gain nothing from a second, slow run.
 sanitized_tests='^igf/(base/|.*_(axes|clock|field|log|parser|reader|track)_test)'
-sanitized_tests+='|^plugin/|^cli/(images/|media/|[a-z_]+_test)|^robustness/'
+sanitized_tests+='|^plugin/|^cli/(images/|media/|report/|[a-z_]+_test)|^robustness/'
 sanitized_tests+='|^rsdiff/(backend/)?[a-z_]+_test|^stabilizer/(analysis_file|backward_map|plane_warper)'
 
 passed=0
