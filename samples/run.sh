@@ -2,17 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # From a fresh Debian 12 to a steady clip: installs what is missing, builds, makes a shaky clip with
 # a rolling shutter whose truth is known, steadies it with and without its gyro log, and measures.
-set -euo pipefail
-cd "$(dirname "$0")/.."
-source cmake/debian_build.sh
-
-install_missing "${rsstab_build_packages[@]}"
-build_preset release rs-stabilize
-
-program=$PWD/build/release/cli/rs-stabilize
-results=$PWD/build/samples
-mkdir -p "$results"
-cd "$results"
+source "$(dirname "$0")/setup.sh"
 
 echo "== a shaky clip: walking, 25 ms of readout"
 "$program" simulate walking --motion walking --seed 1 --duration 6 --overwrite
