@@ -76,10 +76,11 @@ RsMotionModel ModelFor(const ClipCalibrationOptions& options, double readout_s,
   return model;
 }
 
-RsMotionWindow MakeWindow(const RsMotionModel& model, const std::vector<FramePairCells>& pairs) {
+RsMotionWindow MakeWindow(const RsMotionModel& model, const std::vector<FramePairCells>& pairs,
+                          RsMotionWindow::Freedom freedom) {
   SplineStretch stretch;
   ExtendStretch(model, pairs, stretch);
-  return RsMotionWindow(model, pairs, std::move(stretch), 1);
+  return {model, pairs, std::move(stretch), 1, freedom};
 }
 
 // The most probable of `readouts_s` (ascending, 0 among them).
@@ -307,8 +308,8 @@ ClipCalibrator::EvidenceTable ClipCalibrator::MakeEvidenceTable(
     const auto i = static_cast<std::size_t>(begin);
     const RsMotionModel model =
         ModelFor(options_, readouts_s[i / num_stretches], kFlexibleJerkWeight);
-    RsMotionWindow window = MakeWindow(model, kept_[first + i % num_stretches].pairs);
-    if (window.Solve({}, kCurveIterations)) {
+    RsMotionWindow window = MakeWindow(model, kept_[first + i % num_stretches].pairs, {});
+    if (window.Solve(kCurveIterations)) {
       parts[i] = window.LogEvidence(kJerkWeights);
     } else {
       parts[i].assign(kJerkWeights.size(), kImpossible);
@@ -340,8 +341,9 @@ ClipCalibrator::Consensus ClipCalibrator::Refine(double readout_s, double jerk_w
   WorkerPool pool(options_.num_threads);
   pool.ForBlocks(static_cast<int>(opinions.size()), 1, [&](int begin, int /*end*/) {
     const auto i = static_cast<std::size_t>(begin);
-    RsMotionWindow window = MakeWindow(ModelFor(options_, readout_s, jerk_weight), kept_[i].pairs);
-    if (!window.Solve({!options_.readout_s, !options_.focal}, kRefineIterations)) {
+    RsMotionWindow window = MakeWindow(ModelFor(options_, readout_s, jerk_weight), kept_[i].pairs,
+                                       {!options_.readout_s, !options_.focal});
+    if (!window.Solve(kRefineIterations)) {
       return;
     }
     const Eigen::Vector2d unit(options_.frame_interval_s, 1.0);

@@ -66,8 +66,8 @@ std::vector<FusedFrame> RsMotionFusion::TakeReady() { return std::exchange(ready
 
 void RsMotionFusion::SolveWindow(std::size_t tail) {
   ExtendStretch(model_, pending_, stretch_);
-  RsMotionWindow window(model_, pending_, stretch_, num_fixed_);
-  if (window.Solve({}, kIterations)) {
+  RsMotionWindow window(model_, pending_, stretch_, num_fixed_, {});
+  if (window.Solve(kIterations)) {
     stretch_ = window.Stretch();
   }
   const std::size_t num_decided = pending_.size() - tail;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace rsstab::stabilizer {
 namespace {
@@ -20,18 +21,17 @@ constexpr double kMinDepth = 1e-2;
 }  // namespace
 
 RowTimedTrackCost::RowTimedTrackCost(const SplineState& state, double from_time_s, double to_time_s,
-                                     const TrackCell& cell, double sigma, std::size_t first_knot,
-                                     std::size_t num_knots)
+                                     const TrackCell& cell, double sigma,
+                                     std::vector<std::size_t> knots)
     : state_(&state),
       from_time_s_(from_time_s),
       to_time_s_(to_time_s),
       cell_(cell),
       sigma_(sigma),
-      first_knot_(first_knot),
-      num_knots_(num_knots) {
+      knots_(std::move(knots)) {
   set_num_residuals(2);
   mutable_parameter_block_sizes()->assign({1, 1, kParallaxParameters});
-  mutable_parameter_block_sizes()->insert(mutable_parameter_block_sizes()->end(), num_knots, 3);
+  mutable_parameter_block_sizes()->insert(mutable_parameter_block_sizes()->end(), knots_.size(), 3);
 }
 
 bool RowTimedTrackCost::Evaluate(double const* const* parameters, double* residuals,
@@ -78,12 +78,12 @@ bool RowTimedTrackCost::Evaluate(double const* const* parameters, double* residu
     block << x, y, 0.0, 0.0, y, 0.0, y, x;
     block /= sigma_;
   }
-  for (std::size_t i = 0; i < num_knots_; ++i) {
+  for (std::size_t i = 0; i < knots_.size(); ++i) {
     double* j = jacobians[kFirstKnotBlock + static_cast<int>(i)];
     if (j == nullptr) {
       continue;
     }
-    const std::size_t knot = first_knot_ + i;
+    const std::size_t knot = knots_[i];
     RowMajor23 block = RowMajor23::Zero();
     if (knot >= from.first_knot && knot < from.first_knot + igf::kSplineOrder) {
       block += by_from * from.point.by_knot[knot - from.first_knot];

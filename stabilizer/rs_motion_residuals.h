@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <vector>
 
 #include "stabilizer/spline_state_detail.h"
 #include "stabilizer/track_cells.h"
@@ -23,13 +24,12 @@ inline constexpr int kParallaxParameters = 4;  // zoom, shear, stretch, turn
 //   ( f pi(q(t')^-1 q(t) (x / f, 1)) + parallax(x) - x' ) / sigma,
 // x in picture widths, f = focal length in picture widths, t and t' the exposure times of the two
 // rows. Parameters: readout (s), log of the focal length (picture widths), parallax, then the
-// deltas of `num_knots` knots of `state` from `first_knot` on, which must hold all that rule the
-// two instants (instants beyond are answered by the nearest segment).
+// deltas of `knots` of `state` (indices), which must hold all that rule the two instants (instants
+// beyond the spline are answered by the nearest segment).
 class RowTimedTrackCost final : public ceres::CostFunction {
  public:
   RowTimedTrackCost(const SplineState& state, double from_time_s, double to_time_s,
-                    const TrackCell& cell, double sigma, std::size_t first_knot,
-                    std::size_t num_knots);
+                    const TrackCell& cell, double sigma, std::vector<std::size_t> knots);
 
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override;
@@ -40,8 +40,7 @@ class RowTimedTrackCost final : public ceres::CostFunction {
   double to_time_s_;
   TrackCell cell_;
   double sigma_;
-  std::size_t first_knot_;
-  std::size_t num_knots_;
+  std::vector<std::size_t> knots_;
 };
 
 // Weak smoothness: the change of the angular acceleration, as the second difference of the steps

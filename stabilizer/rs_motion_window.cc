@@ -103,8 +103,9 @@ void ExtendStretch(const RsMotionModel& model, std::span<const FramePairCells> p
 
 struct RsMotionWindow::Impl {
   Impl(const RsMotionModel& rs_model, std::span<const FramePairCells> frame_pairs,
-       SplineStretch start)
+       SplineStretch start, Freedom clip_freedom)
       : model(rs_model),
+        freedom(clip_freedom),
         start_s(start.start_s),
         interval_s(start.interval_s),
         state(start.start_s, start.interval_s, std::move(start.knots)),
@@ -122,6 +123,7 @@ struct RsMotionWindow::Impl {
   }
 
   RsMotionModel model;
+  Freedom freedom;
   double start_s;
   double interval_s;
   SplineState state;
@@ -135,29 +137,46 @@ struct RsMotionWindow::Impl {
   std::vector<ceres::ResidualBlockId> jerk_blocks;
   std::vector<double*> motion_blocks;  // free knots and parallax
 
-  void AddTracks(std::span<const FramePairCells> pairs) {
+  // Knots that rule either of two instants. Those in between two frames rule neither, and every one
+  // that need not be asked makes the normal equations cheaper.
+  [[nodiscard]] std::vector<std::size_t> KnotsRuling(double from_s, double to_s) const {
+    // One to spare on either side where the readout, and the instants with it, may move.
+    const std::ptrdiff_t spare = freedom.readout ? 1 : 0;
     const auto last_knot = static_cast<std::ptrdiff_t>(state.size()) - 1;
+    std::vector<std::size_t> knots;
+    const auto add = [&](double time_s) {
+      const std::ptrdiff_t first = std::clamp<std::ptrdiff_t>(state.FirstKnotAt(time_s), 0,
+                                                              last_knot + 1 - igf::kSplineOrder);
+      for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(first - spare, 0);
+           k < std::min(first + igf::kSplineOrder + spare, last_knot + 1); ++k) {
+        const auto knot = static_cast<std::size_t>(k);
+        if (knots.empty() || knot > knots.back()) {
+          knots.push_back(knot);
+        }
+      }
+    };
+    add(std::min(from_s, to_s));
+    add(std::max(from_s, to_s));
+    return knots;
+  }
+
+  void AddTracks(std::span<const FramePairCells> pairs) {
     for (std::size_t n = 0; n < pairs.size(); ++n) {
       const FramePairCells& pair = pairs[n];
       for (const TrackCell& cell : pair.cells) {
         const double sigma =
             model.track_sigma_px / kWidth / std::sqrt(std::min(cell.weight, kMaxCellWeight));
-        const std::ptrdiff_t a =
-            state.FirstKnotAt(pair.from_time_s + readout_s * cell.from_row_share);
-        const std::ptrdiff_t b = state.FirstKnotAt(pair.to_time_s + readout_s * cell.to_row_share);
-        // One knot to spare on either side: the readout may move a little.
-        const std::ptrdiff_t first = std::clamp<std::ptrdiff_t>(std::min(a, b) - 1, 0, last_knot);
-        const std::ptrdiff_t last =
-            std::clamp<std::ptrdiff_t>(std::max(a, b) + igf::kSplineOrder, 0, last_knot);
+        std::vector<std::size_t> knots =
+            KnotsRuling(pair.from_time_s + readout_s * cell.from_row_share,
+                        pair.to_time_s + readout_s * cell.to_row_share);
         std::vector<double*> parameters = {&readout_s, &log_focal, parallax[n].data()};
-        for (std::ptrdiff_t k = first; k <= last; ++k) {
-          parameters.push_back(state.Delta(static_cast<std::size_t>(k)));
+        for (const std::size_t knot : knots) {
+          parameters.push_back(state.Delta(knot));
         }
-        track_blocks.push_back(problem.AddResidualBlock(
-            new RowTimedTrackCost(state, pair.from_time_s, pair.to_time_s, cell, sigma,
-                                  static_cast<std::size_t>(first),
-                                  static_cast<std::size_t>(last - first + 1)),
-            &loss, parameters));
+        track_blocks.push_back(
+            problem.AddResidualBlock(new RowTimedTrackCost(state, pair.from_time_s, pair.to_time_s,
+                                                           cell, sigma, std::move(knots)),
+                                     &loss, parameters));
       }
     }
     data_blocks = track_blocks;
@@ -205,21 +224,21 @@ struct RsMotionWindow::Impl {
 };
 
 RsMotionWindow::RsMotionWindow(const RsMotionModel& model, std::span<const FramePairCells> pairs,
-                               SplineStretch stretch, std::size_t num_fixed)
-    : impl_(std::make_unique<Impl>(model, pairs, std::move(stretch))) {
+                               SplineStretch stretch, std::size_t num_fixed, Freedom freedom)
+    : impl_(std::make_unique<Impl>(model, pairs, std::move(stretch), freedom)) {
   impl_->AddTracks(pairs);
   impl_->AddPriors(num_fixed);
 }
 
 RsMotionWindow::~RsMotionWindow() = default;
 
-bool RsMotionWindow::Solve(Freedom freedom, int max_iterations) {
+bool RsMotionWindow::Solve(int max_iterations) {
   Impl& s = *impl_;
   if (s.track_blocks.empty()) {
     return true;
   }
-  s.Free(&s.readout_s, freedom.readout);
-  s.Free(&s.log_focal, freedom.focal);
+  s.Free(&s.readout_s, s.freedom.readout);
+  s.Free(&s.log_focal, s.freedom.focal);
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   options.max_num_iterations = max_iterations;

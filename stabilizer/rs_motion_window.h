@@ -53,21 +53,21 @@ void ExtendStretch(const RsMotionModel& model, std::span<const FramePairCells> p
 // consecutive frame pairs, by robust least squares (Ceres). Not thread safe.
 class RsMotionWindow {
  public:
-  // `stretch` covers all pairs (ExtendStretch) and is where the search starts; its first
-  // `num_fixed` knots (at least one) stay as they are: what earlier windows decided.
-  RsMotionWindow(const RsMotionModel& model, std::span<const FramePairCells> pairs,
-                 SplineStretch stretch, std::size_t num_fixed);
-  ~RsMotionWindow();
-  RsMotionWindow(const RsMotionWindow&) = delete;
-  RsMotionWindow& operator=(const RsMotionWindow&) = delete;
-
-  // Readout and focal length stay as given unless freed.
+  // Readout and focal length stay as the model gives them unless freed.
   struct Freedom {
     bool readout = false;
     bool focal = false;
   };
+  // `stretch` covers all pairs (ExtendStretch) and is where the search starts; its first
+  // `num_fixed` knots (at least one) stay as they are: what earlier windows decided.
+  RsMotionWindow(const RsMotionModel& model, std::span<const FramePairCells> pairs,
+                 SplineStretch stretch, std::size_t num_fixed, Freedom freedom);
+  ~RsMotionWindow();
+  RsMotionWindow(const RsMotionWindow&) = delete;
+  RsMotionWindow& operator=(const RsMotionWindow&) = delete;
+
   // False when the solver found no usable answer; the state is then as before.
-  [[nodiscard]] bool Solve(Freedom freedom, int max_iterations);
+  [[nodiscard]] bool Solve(int max_iterations);
 
   [[nodiscard]] SplineStretch Stretch() const;
   [[nodiscard]] double readout_s() const;

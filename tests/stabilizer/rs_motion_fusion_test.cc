@@ -119,8 +119,8 @@ TEST(RsMotionFusion, WindowsJoinWithoutAJump) {
   SplineStretch stretch;
   const std::span<const FramePairCells> all = std::span(pairs).subspan(1);
   ExtendStretch(model, all, stretch);
-  RsMotionWindow batch(model, all, std::move(stretch), 1);
-  ASSERT_TRUE(batch.Solve({}, 10));
+  RsMotionWindow batch(model, all, std::move(stretch), 1, {});
+  ASSERT_TRUE(batch.Solve(10));
   const SplineStretch solved = batch.Stretch();
   igf::So3Spline spline(solved.start_s, solved.interval_s);
   for (const Eigen::Quaterniond& knot : solved.knots) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -83,6 +85,12 @@ class CostProbe {
   std::vector<double*> blocks_;
 };
 
+std::vector<std::size_t> AllKnots() {
+  std::vector<std::size_t> knots(kKnots);
+  std::iota(knots.begin(), knots.end(), std::size_t{0});
+  return knots;
+}
+
 SplineState RandomState(unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-0.03, 0.03);
@@ -103,7 +111,7 @@ TEST(RowTimedTrackCost, JacobiansAreSlopes) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     SplineState state = RandomState(seed);
     const TrackCell cell = {{0.3, -0.2}, {0.28, -0.15}, -0.35, -0.25, 1.0};
-    const RowTimedTrackCost cost(state, kFromS, kToS, cell, 0.1, 0, kKnots);
+    const RowTimedTrackCost cost(state, kFromS, kToS, cell, 0.1, AllKnots());
     CostProbe probe(state, cost, 0, {{0.012}, {std::log(0.8)}, {0.01, -0.02, 0.03, 0.005}});
     probe.ExpectJacobiansAreSlopes();
   }
@@ -143,7 +151,7 @@ TEST(RowTimedTrackCost, YawToTheRightMovesLowRowsFurtherLeft) {
   const Eigen::Vector2d to(kFocal * std::tan(std::atan(from.x() / kFocal) - angle), 0.0);
   EXPECT_LT(to.x(), from.x());
   const TrackCell cell = {from, to, kFromShare, kToShare, 1.0};
-  const RowTimedTrackCost cost(state, kFromS, kToS, cell, 1.0, 0, kKnots);
+  const RowTimedTrackCost cost(state, kFromS, kToS, cell, 1.0, AllKnots());
   CostProbe probe(state, cost, 0, {{kReadout}, {std::log(kFocal)}, {0.0, 0.0, 0.0, 0.0}});
   EXPECT_LT(probe.Residuals().norm(), 1e-9);
   // Read from the bottom, the same match would be off by twice the readout between the two rows.
@@ -154,7 +162,7 @@ TEST(RowTimedTrackCost, YawToTheRightMovesLowRowsFurtherLeft) {
 TEST(RowTimedTrackCost, ParallaxIsAnAffineMotion) {
   SplineState state(0.0, kInterval, Knots([] { return Eigen::Vector3d(0.0, 0.0, 0.0); }));
   const TrackCell still = {{0.3, -0.2}, {0.3, -0.2}, 0.0, 0.0, 1.0};
-  const RowTimedTrackCost cost(state, kFromS, kToS, still, 1.0, 0, kKnots);
+  const RowTimedTrackCost cost(state, kFromS, kToS, still, 1.0, AllKnots());
   // zoom, shear, stretch, turn: x' += .01 x + .02 y, y' += .04 x + (.01 + .03) y
   CostProbe probe(state, cost, 0, {{0.0}, {0.0}, {0.01, 0.02, 0.03, 0.04}});
   EXPECT_LT((probe.Residuals() - Eigen::Vector2d(0.003 - 0.004, 0.012 - 0.008)).norm(), 1e-12);
@@ -163,7 +171,7 @@ TEST(RowTimedTrackCost, ParallaxIsAnAffineMotion) {
 TEST(RowTimedTrackCost, ARayBehindTheCameraIsRefused) {
   SplineState state(0.0, kInterval, Knots([] { return Eigen::Vector3d(0.0, 0.5, 0.0); }));
   const TrackCell cell = {{0.3, 0.0}, {0.3, 0.0}, 0.0, 0.0, 1.0};
-  const RowTimedTrackCost cost(state, kFromS, kToS, cell, 1.0, 0, kKnots);
+  const RowTimedTrackCost cost(state, kFromS, kToS, cell, 1.0, AllKnots());
   std::vector<double> readout = {0.0}, focal = {0.0}, parallax(4, 0.0);
   std::vector<double*> blocks = {readout.data(), focal.data(), parallax.data()};
   for (std::size_t k = 0; k < kKnots; ++k) {

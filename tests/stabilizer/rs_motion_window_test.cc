@@ -25,10 +25,11 @@ constexpr int kFrames = 30;
 constexpr int kIterations = 8;
 constexpr double kReadout = 0.02;
 
-RsMotionWindow MakeWindow(const RsMotionModel& model, const std::vector<FramePairCells>& pairs) {
+RsMotionWindow MakeWindow(const RsMotionModel& model, const std::vector<FramePairCells>& pairs,
+                          RsMotionWindow::Freedom freedom = {}) {
   SplineStretch stretch;
   ExtendStretch(model, pairs, stretch);
-  return {model, pairs, std::move(stretch), 1};
+  return {model, pairs, std::move(stretch), 1, freedom};
 }
 
 // RMS over frames of the largest error of a row; the ends, which lack a neighbour, left out.
@@ -63,7 +64,7 @@ TEST_P(KnownReadout, MotionWithinFramesIsFound) {
   RsMotionModel model = camera.Model();
   model.jerk_weight = UsualJerkWeight(preset);
   RsMotionWindow window = MakeWindow(model, camera.Pairs(times_s));
-  ASSERT_TRUE(window.Solve({}, kIterations));
+  ASSERT_TRUE(window.Solve(kIterations));
   std::vector<double> motion;
   for (const double t : times_s) {
     motion.push_back(camera.RowMotion(t));
@@ -74,7 +75,7 @@ TEST_P(KnownReadout, MotionWithinFramesIsFound) {
   // Taken to be read the other way round, the same tracks give another motion.
   model.readout_s = -readout_s;
   RsMotionWindow reversed = MakeWindow(model, camera.Pairs(times_s));
-  ASSERT_TRUE(reversed.Solve({}, kIterations));
+  ASSERT_TRUE(reversed.Solve(kIterations));
   EXPECT_GT(Error(camera, reversed.Stretch(), times_s), 3.0 * tolerance_px);
 }
 
@@ -90,8 +91,8 @@ TEST(RsMotionWindow, ReadoutAndFocalLengthAreFoundFromNearby) {
   model.jerk_weight = 0.1;
   model.readout_s = 0.7 * kReadout;
   model.focal = 0.9 * kFocal;
-  RsMotionWindow window = MakeWindow(model, camera.Pairs(RegularTimes(40)));
-  ASSERT_TRUE(window.Solve({true, true}, 20));
+  RsMotionWindow window = MakeWindow(model, camera.Pairs(RegularTimes(40)), {true, true});
+  ASSERT_TRUE(window.Solve(20));
   EXPECT_NEAR(window.readout_s(), kReadout, 0.05 * kReadout);
   EXPECT_NEAR(window.focal(), kFocal, 0.03 * kFocal);
 }
@@ -112,8 +113,8 @@ TEST(RsMotionWindow, InformationIsTheScatterOfTheAnswer) {
   double mean = 0.0;
   for (int seed = 1; seed <= kSeeds; ++seed) {
     camera.track_options.seed = static_cast<unsigned>(seed);
-    RsMotionWindow window = MakeWindow(model, camera.Pairs(times_s));
-    ASSERT_TRUE(window.Solve({true, false}, kIterations));
+    RsMotionWindow window = MakeWindow(model, camera.Pairs(times_s), {true, false});
+    ASSERT_TRUE(window.Solve(kIterations));
     readouts.push_back(window.readout_s());
     mean += window.readout_s() / kSeeds;
     promised += std::sqrt(1.0 / window.ClipInformation()(0, 0)) / kSeeds;
@@ -143,7 +144,7 @@ TEST(RsMotionWindow, EvidencePrefersTheTrueReadoutAndItsStiffness) {
       model.jerk_weight = 0.01;
       model.readout_s = share * kReadout;
       RsMotionWindow window = MakeWindow(model, pairs);
-      ASSERT_TRUE(window.Solve({}, kIterations));
+      ASSERT_TRUE(window.Solve(kIterations));
       const auto evidence = window.LogEvidence(kWeights);
       by_readout.push_back(*std::max_element(evidence.begin(), evidence.end()));
       if (share == 1.0) {
@@ -162,8 +163,8 @@ TEST(RsMotionWindow, FixedKnotsStay) {
   SplineStretch start;
   ExtendStretch(camera.Model(), pairs, start);
   constexpr std::size_t kFixed = 9;
-  RsMotionWindow window(camera.Model(), pairs, start, kFixed);
-  ASSERT_TRUE(window.Solve({}, kIterations));
+  RsMotionWindow window(camera.Model(), pairs, start, kFixed, {});
+  ASSERT_TRUE(window.Solve(kIterations));
   const SplineStretch solved = window.Stretch();
   ASSERT_EQ(solved.knots.size(), start.knots.size());
   for (std::size_t k = 0; k < kFixed; ++k) {
@@ -178,8 +179,8 @@ TEST(RsMotionWindow, PairsWithoutTracksLeaveTheStretchAsItIs) {
   pair.to_time_s = kFrameS;
   SplineStretch start;
   ExtendStretch(camera.Model(), {&pair, 1}, start);
-  RsMotionWindow window(camera.Model(), {&pair, 1}, start, 1);
-  EXPECT_TRUE(window.Solve({true, true}, kIterations));
+  RsMotionWindow window(camera.Model(), {&pair, 1}, start, 1, {true, true});
+  EXPECT_TRUE(window.Solve(kIterations));
   EXPECT_EQ(window.Stretch().knots.size(), start.knots.size());
   EXPECT_TRUE(window.ClipInformation().isZero());
 }
