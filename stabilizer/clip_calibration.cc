@@ -48,6 +48,8 @@ constexpr double kSystematicFocalSigma = 0.015;
 constexpr double kMaxGlobalSigma = 0.05;
 constexpr double kMaxReadoutSigma = 0.1;
 constexpr std::size_t kFavourites = 4;
+constexpr double kFewStretches = 3.0;
+constexpr std::size_t kMinAgreeing = 3;
 constexpr double kReadoutPriorSigma = 1.0;  // frame intervals
 constexpr double kImpossible = -1e12;
 
@@ -155,26 +157,26 @@ void Judge(double frame_interval_s, bool beats_global, ClipCalibration& result) 
   if (tracks) {
     add(*tracks);
   }
-  // Where the two contradict each other the tracks are believed: they see motion, the pictures
-  // only guess it from what stands upright.
+  // Where the two contradict each other the tracks are believed if they have seen enough: they see
+  // motion, the pictures only guess it from what stands upright.
   const bool agree = !tracks || !pictures ||
                      std::abs(tracks->value - pictures->value) <
                          kSigmasToBelieve * std::hypot(tracks->sigma, pictures->sigma);
   if (pictures && std::isfinite(pictures->sigma) && agree) {
     add(*pictures);
   }
-  if (!(information > 0.0)) {
+  if (!(information > 0.0) || (!agree && result.num_windows < kMinAgreeing)) {
     return;
   }
   const double readout_s = weighted / information;
   const double sigma_s = 1.0 / std::sqrt(information);
   result.readout_s = {0.0, sigma_s, false};
-  if (std::abs(readout_s) >
-          std::max(kSigmasToBelieve * sigma_s, kVisibleReadout * frame_interval_s) &&
-      beats_global) {
+  const bool is_seen = std::abs(readout_s) >
+                       std::max(kSigmasToBelieve * sigma_s, kVisibleReadout * frame_interval_s);
+  if (is_seen && beats_global) {
     result.verdict = ShutterVerdict::kRolling;
     result.readout_s = {readout_s, sigma_s, true};
-  } else if (sigma_s < kMaxGlobalSigma * frame_interval_s) {
+  } else if (!is_seen && sigma_s < kMaxGlobalSigma * frame_interval_s) {
     result.verdict = ShutterVerdict::kGlobal;
     result.readout_s.trusted = true;
   }
@@ -234,7 +236,10 @@ ClipCalibration ClipCalibrator::Calibrate(const std::optional<Estimate>& picture
     if (!options_.focal) {
       result.focal = FocalOf(consensus);
     }
-    const double sigma = std::hypot(consensus.sigma.x(), kSystematicSigma);
+    // Few stretches cannot show how much stretches differ.
+    const auto n = static_cast<double>(kept_.size());
+    const double sigma =
+        std::hypot(consensus.sigma.x() * (1.0 + kFewStretches / (n * n)), kSystematicSigma);
     result.tracks_readout_s = {consensus.value.x() * options_.frame_interval_s,
                                sigma * options_.frame_interval_s, sigma < kMaxReadoutSigma};
   }

@@ -24,8 +24,11 @@ constexpr std::array<double, 2> kCandidates = {-0.5, 1.0};
 // One step and an antithetic pair of samples give the best mean for the time.
 constexpr int kSteps = 1;
 constexpr int kSamples = 2;
-// What leaning things make the model see in a whole clip, as a skew in picture widths.
-constexpr double kContentSigma = 0.004;
+// What leaning things pretend in a whole clip, as a true skew in picture widths (5 px at 640). A
+// clip in which the camera turns both ways tells it from the readout; a steady pan does not.
+constexpr double kContentSkew = 0.008;
+// Of which the model sees about this share, until it is known better.
+constexpr double kUsualResponse = 0.07;
 
 // The picture as if its rows had been read out with the opposite skew: every row is moved by its
 // share of the motion in one readout, so that a readout of `intervals` frame intervals is undone.
@@ -107,10 +110,17 @@ struct Sums {
     }
   }
 
-  // Skew per velocity; the content term is shrunk by its prior, `noise` being a picture's variance.
-  [[nodiscard]] double Slope(std::size_t c, double noise) const {
-    const double shrunk = 1.0 / (n + noise / (kContentSigma * kContentSigma));
-    return (vs[c] - shrunk * v.dot(s[c])) / std::max(vv - shrunk * v.squaredNorm(), 1e-12);
+  // Sum of squared velocity that the content term leaves to the slope; that term has a Gaussian
+  // prior of standard deviation `content`, `noise` is one picture's variance.
+  [[nodiscard]] double Shrinkage(double noise, double content) const {
+    return 1.0 / (n + noise / (content * content));
+  }
+  [[nodiscard]] double Leverage(double noise, double content) const {
+    return std::max(vv - Shrinkage(noise, content) * v.squaredNorm(), 1e-12);
+  }
+  // Skew per velocity.
+  [[nodiscard]] double Slope(std::size_t c, double noise, double content) const {
+    return (vs[c] - Shrinkage(noise, content) * v.dot(s[c])) / Leverage(noise, content);
   }
 };
 
@@ -210,7 +220,7 @@ Result<PictureReadout> ReadoutPictures::Ask(rsdiff::SingleImageEstimator& estima
   const auto slopes_of = [&](const Sums& sums) {
     std::array<double, kCandidates.size()> slopes{};
     for (std::size_t c = 0; c < kCandidates.size(); ++c) {
-      slopes[c] = sums.Slope(c, noise);
+      slopes[c] = sums.Slope(c, noise, kContentSkew * kUsualResponse);
     }
     return slopes;
   };
@@ -236,7 +246,16 @@ Result<PictureReadout> ReadoutPictures::Ask(rsdiff::SingleImageEstimator& estima
   result.readout_s = line.zero * frame_interval_s;
   // A response that may as well be none has no zero to speak of.
   if (line.response > 3.0 * std::sqrt(response_variance)) {
-    result.sigma_s = std::sqrt(zero_variance) * frame_interval_s;
+    // What all pictures share does not show when one is left out.
+    double unexplained = noise;
+    for (std::size_t c = 0; c < kCandidates.size(); ++c) {
+      unexplained -= slopes[c] * total.vs[c] / (2.0 * n * static_cast<double>(kCandidates.size()));
+    }
+    unexplained = std::max(unexplained, 0.0);
+    const double shared_variance = unexplained /
+                                   total.Leverage(unexplained, kContentSkew * line.response) /
+                                   (line.response * line.response);
+    result.sigma_s = std::sqrt(std::max(zero_variance, shared_variance)) * frame_interval_s;
   }
   for (std::size_t c = 0; c < kCandidates.size(); ++c) {
     result.curve.push_back(
