@@ -281,9 +281,9 @@ RSSTAB_API rsstab_status rsstab_flush(rsstab_instance* instance);
 RSSTAB_API rsstab_status rsstab_render(rsstab_instance* instance, const rsstab_picture* picture,
                                        int64_t pts, const rsstab_buffer* buffer);
 
-/* Apply only: the time, in ticks of the video, of the `index`th frame (from 0) of the analysis file,
- * for hosts that hand over frames in order but without times. RSSTAB_ERROR_INVALID_ARGUMENT: the
- * file has no such frame. */
+/* Apply only: the time, in ticks of the video, of the `index`th frame (from 0) of the analysis
+ * file, for hosts that hand over frames in order but without times. RSSTAB_ERROR_INVALID_ARGUMENT:
+ * the file has no such frame. */
 RSSTAB_API rsstab_status rsstab_frame_time(rsstab_instance* instance, int64_t index, int64_t* pts);
 
 /* Live and apply: releases all frames inside and begins anew, as if just created (after a seek). */
