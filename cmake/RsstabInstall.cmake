@@ -47,3 +47,8 @@ install(FILES ${rsstab_docs}/rs-stabilize.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/
 install(FILES ${rsstab_docs}/rs-stabilize
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
 install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+# For those who build FFmpeg: the native filter as source, with the scripts that add and build it.
+set(rsstab_ffmpeg_dir ${CMAKE_INSTALL_DATADIR}/rs-stabilize/ffmpeg)
+install(FILES plugin/ffmpeg/vf_rsstabilize.c DESTINATION ${rsstab_ffmpeg_dir} COMPONENT development)
+install(PROGRAMS plugin/ffmpeg/add_to_ffmpeg.sh plugin/ffmpeg/build_ffmpeg.sh
+  DESTINATION ${rsstab_ffmpeg_dir} COMPONENT development)
