@@ -12,6 +12,7 @@
 #include "cli/commands/method_list.h"
 #include "evaluation/baselines/homography_mixture.h"
 #include "evaluation/baselines/rotation_spline.h"
+#include "evaluation/baselines/straight_lines.h"
 #include "evaluation/gyro_method.h"
 #include "evaluation/spread_coverage.h"
 #include "rsdiff/model_path.h"
@@ -27,11 +28,13 @@ using evaluation::MethodSet;
 using evaluation::NoCorrection;
 using evaluation::RotationSplineMethod;
 using evaluation::SingleImageMethod;
+using evaluation::StraightLinesMethod;
 using rsdiff::SingleImageEstimator;
 
 const char* const kNone = "none";
 const char* const kGyro = "gyro";
 const char* const kGyroOneStep = "gyro-onestep";
+const char* const kLines = "lines";
 const char* const kHomographyMixture = "homography-mixture";
 const char* const kRotationSpline = "rotation-spline";
 const char* const kRegression = "regression";
@@ -145,6 +148,9 @@ Result<std::unique_ptr<evaluation::MotionMethod>> MakeMethod(const EvaluateOptio
   if (method.name == kGyro) {
     return std::make_unique<GyroMethod>(method.text, 0);
   }
+  if (method.name == kLines) {
+    return std::make_unique<StraightLinesMethod>(options.know_focal);
+  }
   if (method.name == kHomographyMixture) {
     return std::make_unique<HomographyMixtureMethod>();
   }
@@ -194,7 +200,7 @@ Result<MethodSet> MakeMethods(const EvaluateOptions& options,
 }  // namespace
 
 std::string PictureMethodNames() {
-  return "none, gyro, gyro-onestep, diffusion, sample, mean, reference, regression, "
+  return "none, gyro, gyro-onestep, diffusion, sample, mean, reference, regression, lines, "
          "homography-mixture, "
          "rotation-spline";
 }

@@ -66,7 +66,7 @@ struct EvaluateOptions {
 };
 
 inline constexpr const char* kDatasetMethods =
-    "none,gyro,gyro-onestep,diffusion,diffusion@steps=1,samples=1,reference,"
+    "none,gyro,gyro-onestep,diffusion,diffusion@steps=1,samples=1,reference,lines,"
     "homography-mixture,rotation-spline";
 
 [[nodiscard]] const pipeline::OptionTable<EvaluateOptions>& EvaluateOptionTable();
