@@ -125,6 +125,12 @@ std::vector<LineChart> Cumulative(const std::vector<std::string>& methods,
   chart.x_label = "end-point error, px";
   chart.y_label = "% of the pictures";
   chart.include_zero = true;
+  double largest = 0.0;
+  for (const auto& values : errors) {
+    for (const double value : values) {
+      largest = std::isfinite(value) ? std::max(largest, value) : largest;
+    }
+  }
   bool any = false;
   for (std::size_t m = 0; m < methods.size(); ++m) {
     std::vector<double>& values = errors[m];
@@ -137,6 +143,7 @@ std::vector<LineChart> Cumulative(const std::vector<std::string>& methods,
       series.points.emplace_back(
           values[i], kPercent * static_cast<double>(i + 1) / static_cast<double>(values.size()));
     }
+    series.points.emplace_back(largest, kPercent);
     any = any || !values.empty();
     if (!values.empty()) {
       chart.series.push_back(std::move(series));

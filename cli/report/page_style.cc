@@ -48,7 +48,7 @@ gap:26px 34px;margin-top:18px}
 .slides>:first-child{grid-column:1/-1}.slides>:only-child{max-width:720px}
 @media(max-width:640px){.slides{grid-template-columns:minmax(0,1fr)}}
 figure{margin:0}
-figcaption{margin-top:6px;font-size:14px;color:var(--faint)}
+figcaption{overflow-wrap:anywhere;margin-top:6px;font-size:14px;color:var(--faint)}
 figcaption b{color:var(--ink);font-weight:600}
 .stage{position:relative;overflow:hidden;border-radius:3px;background:var(--grid);
 touch-action:pan-y;cursor:ew-resize;user-select:none;-webkit-user-select:none}

@@ -76,10 +76,11 @@ TEST(ErrorCharts, AreCumulative) {
   const auto charts = ErrorCharts(Report({3.0, 1.0}));
   ASSERT_EQ(charts.size(), 1U);
   const auto& points = charts[0].series.at(2).points;
-  ASSERT_EQ(points.size(), 3U);
+  ASSERT_EQ(points.size(), 4U);
   EXPECT_EQ(points[0], Eigen::Vector2d(0, 0));
   EXPECT_EQ(points[1], Eigen::Vector2d(1, 50));
   EXPECT_EQ(points[2], Eigen::Vector2d(3, 100));
+  EXPECT_EQ(points[3], Eigen::Vector2d(4, 100));  // as far as the worst method
 }
 
 }  // namespace
