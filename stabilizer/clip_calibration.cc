@@ -20,12 +20,13 @@ constexpr std::size_t kMinStretchPairs = 12;
 constexpr std::size_t kMaxStretches = 6;
 constexpr std::size_t kCurveStretches = 3;
 // Readout times that are tried, frame intervals.
-constexpr double kCurveStep = 0.2;
-constexpr int kCurveSteps = 5;  // to either side of 0
+constexpr double kCurveStep = 0.25;
+constexpr int kFirstCurveStep = -3;
+constexpr int kLastCurveStep = 4;
 constexpr std::array<double, 6> kJerkWeights = {0.003, 0.01, 0.03, 0.1, 0.3, 1.0};
 // Flexible enough to follow anything, so that robust weights leave out only what is wrong.
 constexpr double kFlexibleJerkWeight = 0.01;
-constexpr int kCurveIterations = 3;
+constexpr int kCurveIterations = 2;
 constexpr int kRefineIterations = 8;
 constexpr double kDefaultFocal = 0.8;
 constexpr double kFocalPriorSigma = 0.15;
@@ -47,7 +48,7 @@ constexpr double kSystematicFocalSigma = 0.015;
 // "No rolling shutter" is said when it is known this well, frame intervals.
 constexpr double kMaxGlobalSigma = 0.05;
 constexpr double kMaxReadoutSigma = 0.1;
-constexpr std::size_t kFavourites = 4;
+constexpr std::size_t kFavourites = 3;
 constexpr double kFewStretches = 3.0;
 constexpr std::size_t kMinAgreeing = 3;
 constexpr double kReadoutPriorSigma = 1.0;  // frame intervals
@@ -259,13 +260,13 @@ void ClipCalibrator::SearchReadout(ClipCalibration& result, double& readout_s,
   }
   // Everything on the most telling stretch, then its favourites and the global shutter on more.
   std::vector<double> grid_s;
-  for (int i = -kCurveSteps; i <= kCurveSteps; ++i) {
+  for (int i = kFirstCurveStep; i <= kLastCurveStep; ++i) {
     grid_s.push_back(kCurveStep * i * options_.frame_interval_s);
   }
   const EvidenceTable first = MakeEvidenceTable(grid_s, 0, 1);
   std::vector<std::size_t> order(grid_s.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const std::size_t global = grid_s.size() / 2;
+  const std::size_t global = -kFirstCurveStep;
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return (a == global) != (b == global) ? a == global : first.At(a) > first.At(b);
   });
