@@ -63,6 +63,25 @@ TEST_F(OutputFailure, FullDisk) {
 
 TEST_F(OutputFailure, FullDevice) { ExpectRefusal({"clip.mp4", "-o", "/dev/full"}, 1, ""); }
 
+TEST_F(OutputFailure, ReportTakesNoFilesPlace) {
+  WriteText(Path("report.html"), "precious");
+  ExpectRefusal({"clip.mp4", "-o", "out.mp4", "--report", "report.html"}, 1, "--overwrite");
+  EXPECT_EQ(ReadBytes(Path("report.html")).size(), 8U);
+  const Bytes before = ReadBytes(Path("clip.mp4"));
+  ExpectRefusal({"clip.mp4", "-o", "out.mp4", "--report", "clip.mp4", "--overwrite"}, 1,
+                "clip.mp4");
+  EXPECT_EQ(ReadBytes(Path("clip.mp4")), before);
+  ExpectRefusal({"clip.mp4", "-o", "out.mp4", "--report", "out.mp4"}, 1, "out.mp4");
+  ExpectRefusal({"clip.mp4", "-o", "out.mp4", "--report", "no/such/report.html"}, 1, "no/such");
+}
+
+TEST_F(OutputFailure, ClipStaysWhenOnlyTheReportFails) {
+  const ProgramResult run = Run({"clip.mp4", "-o", "out.mp4", "--report", "/dev/full"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.error, ::testing::HasSubstr("/dev/full"));
+  EXPECT_EQ(CountFrames(Path("out.mp4")), 12);
+}
+
 TEST_F(OutputFailure, ReaderOfThePipeGoesAway) {
   ProgramSettings settings;
   settings.close_output = true;

@@ -35,6 +35,7 @@ arrows igf 'igf/'
 arrows evaluation 'igf/|rsdiff/|stabilizer/|evaluation/'
 arrows cli/images 'igf/base/|cli/images/'
 arrows cli/media 'igf/base/|cli/media/'
+arrows cli/report 'igf/base/|stabilizer/|cli/images/|cli/report/'
 while IFS= read -r hit; do
   complain "$hit: points up the module graph"
 done < <(grep -rnE '^#include "(stabilizer/pipeline|rsdiff|cli|plugin)/' stabilizer \
