@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The camera's rotation from tracks: 490 tracks a frame pair, as 1920x1080 footage gives. `frame`
-// is the time per frame pair. Budget: 3 ms a frame for everything, of which 0.3 ms are the cells'
-// and 2 ms the fusion's; 0.5 s a clip for the calibration, whatever its length.
+// is the time per frame pair. Budget: 3 ms a frame for everything, of which 0.5 ms are the cells'
+// (made twice) and 2 ms the fusion's; 1 s a clip for the calibration, whatever its length.
 //   rs_motion_bench --benchmark_repetitions=5 --benchmark_report_aggregates_only=true
 
 #include <benchmark/benchmark.h>
