@@ -16,6 +16,12 @@ if(RSSTAB_SANITIZE)
   # libceres allocated (nor the other way round). malloc is aligned well enough.
   target_compile_definitions(rsstab_build_flags INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
+if(RSSTAB_FUZZ)
+  target_compile_options(rsstab_build_flags INTERFACE
+    -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined)
+  target_link_options(rsstab_build_flags INTERFACE -fsanitize=address,undefined)
+  target_compile_definitions(rsstab_build_flags INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
+endif()
 
 # rsstab_module(NAME SOURCES ... PUBLIC ... PRIVATE ...)
 # A static library `rsstab_NAME` with alias `rsstab::NAME`. PRIVATE dependencies never reach the

@@ -9,9 +9,9 @@ namespace rsstab::stabilizer {
 namespace {
 
 constexpr double kWidth = 640.0;
-// Frame pairs solved together, and how many of the last ones the next window decides again: what
-// follows a frame tells about it as much as what precedes it.
-constexpr std::size_t kWindowPairs = 45;
+// How many of the last pairs of a window the next one decides again: what follows a frame tells
+// about it as much as what precedes it.
+constexpr std::size_t kWindowPairs = kFusionDelayFrames;
 constexpr std::size_t kTailPairs = 20;
 constexpr int kIterations = 4;
 // A frame whose every cell stays this still repeats the one before; noise alone moves more.

@@ -27,6 +27,10 @@ struct FusedFrame {
   std::optional<igf::So3Spline> spline;
 };
 
+// Frame pairs solved together: a frame is decided at the latest when so many more were pushed that
+// do not repeat the one before.
+inline constexpr int kFusionDelayFrames = 45;
+
 // One continuous rotation for a whole clip (Ringaby and Forssen 2012, with the readout known and
 // every row in its place), solved in windows that slide over the clip: each window begins with the
 // knots that the earlier ones decided, and decides all but its last ones. Linear time; memory of

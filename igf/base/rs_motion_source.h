@@ -47,6 +47,8 @@ class RsMotionSource {
     (void)time_s;
   }
   virtual void FinishObserving() {}
+  // How many frames beyond one it may have to see, repeated frames not counted.
+  [[nodiscard]] virtual int DelayFrames() const { return 0; }
   // EstimateMotion may be asked for frames below this number. A source that looks at pictures
   // answers at once.
   [[nodiscard]] virtual std::int64_t NumAnswerable() const {

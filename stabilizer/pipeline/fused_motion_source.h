@@ -29,6 +29,7 @@ class FusedMotionSource final : public RsMotionSource {
   [[nodiscard]] bool NeedsImage() const override { return false; }
   void Observe(const PointTracks& tracks, double time_s) override;
   void FinishObserving() override;
+  [[nodiscard]] int DelayFrames() const override { return stabilizer::kFusionDelayFrames; }
   [[nodiscard]] std::int64_t NumAnswerable() const override;
 
   // In order of frames; a frame before the one asked for last is forgotten.

@@ -63,10 +63,11 @@ stabilizer::PathSmootherOptions SmootherOptions(const StabilizeOptions& options,
 
 using AnyZoomPlanner = std::variant<stabilizer::ZoomPlanner, stabilizer::OnlineZoomPlanner>;
 
-// How a look-ahead is shared between smoother and zoom planner.
+// How a look-ahead is shared between rolling-shutter source, smoother and zoom planner.
 struct Lookahead {
   std::optional<int> smoother;
-  std::optional<std::size_t> zoom;  // empty: as long as the planner wants
+  std::optional<std::size_t> zoom;    // empty: as long as the planner wants
+  std::optional<std::size_t> source;  // empty: as long as the source wants
 };
 
 Lookahead ShareLookahead(std::optional<int> frames, double frames_per_second) {
@@ -317,7 +318,21 @@ Result<std::unique_ptr<MotionStage>> MotionStage::Create(const StabilizeOptions&
                 "a clip of {}x{} at {} frames per second is not possible", clip.width, clip.height,
                 clip.frames_per_second);
   }
-  const Lookahead lookahead = ShareLookahead(lookahead_frames, clip.frames_per_second);
+  const int source_delay = selection->source ? selection->source->DelayFrames() : 0;
+  std::optional<int> left = lookahead_frames;
+  if (left && *left < source_delay) {
+    return Fail(ErrorCode::kInvalidArgument,
+                "a look-ahead of {} frames is too short for the rolling-shutter source {}, which "
+                "needs {}",
+                *left, selection->source->Name(), source_delay);
+  }
+  if (left) {
+    *left -= source_delay;
+  }
+  Lookahead lookahead = ShareLookahead(left, clip.frames_per_second);
+  if (left) {
+    lookahead.source = static_cast<std::size_t>(source_delay);
+  }
   auto smoother = stabilizer::MakeCeresPathSmoother(
       SmootherOptions(options, clip, *selection, lookahead.smoother));
   if (!smoother) {
@@ -347,7 +362,19 @@ Status MotionStage::Push(const FrameObservation& observation, const FrameView* i
     return s.Advance(observation, image);
   }
   s.waiting_for_source.push_back(observation);
-  return s.AdvanceAnswerable();
+  if (Status ok = s.AdvanceAnswerable(); !ok) {
+    return ok;
+  }
+  // A source that takes longer than it was given (frames that repeat each other tell it nothing):
+  // the frame is due, and goes without.
+  while (s.lookahead.source && s.waiting_for_source.size() > *s.lookahead.source) {
+    const FrameObservation due = std::move(s.waiting_for_source.front());
+    s.waiting_for_source.pop_front();
+    if (Status ok = s.Advance(due, nullptr); !ok) {
+      return ok;
+    }
+  }
+  return {};
 }
 
 Status MotionStage::Finish() {

@@ -27,34 +27,13 @@ struct OnlineStabilizer::Impl {
   std::size_t delay;
   ClipGeometry clip;
   Logger logger;
-  OnlineRsSelection rs;
+  RsSelection rs;
   std::unique_ptr<MotionStage> stage;
   std::unique_ptr<FrameRenderer> renderer;
   stabilizer::FeatureTracker tracker{stabilizer::FeatureTrackerOptions{}};
   std::deque<Waiting> frames;                      // pushed and not rendered
-  std::deque<FrameObservation> observed;           // whose readout motion is not decided
-  std::int64_t num_staged = 0;                     // observations handed to the stage
   std::deque<stabilizer::FrameAnalysis> analyses;  // of frames.front() and those after it
   bool flushed = false;
-
-  Status Stage(const FrameObservation& observation, const FrameView* picture) {
-    ++num_staged;
-    if (Status ok = stage->Push(observation, picture); !ok) {
-      return ok;
-    }
-    TakeAnalyses();
-    return {};
-  }
-
-  Status StageDecided() {
-    while (!observed.empty() && num_staged < rs.delayed->num_decided()) {
-      if (Status ok = Stage(observed.front(), nullptr); !ok) {
-        return ok;
-      }
-      observed.pop_front();
-    }
-    return {};
-  }
 
   void TakeAnalyses() {
     for (stabilizer::FrameAnalysis& analysis : stage->TakeReady()) {
@@ -84,27 +63,20 @@ Result<std::unique_ptr<OnlineStabilizer>> OnlineStabilizer::Create(const OnlineO
     return Propagate(std::move(ok.error()));
   }
   auto impl = std::make_unique<Impl>(options, clip, logger ? std::move(logger) : SilentLogger());
-  auto rs = SelectOnlineRsSource(options.stabilize, clip, std::move(inputs), impl->logger);
+  auto rs = SelectOnlineRsSource(options, clip, std::move(inputs), impl->logger);
   if (!rs) {
     return Propagate(std::move(rs.error()));
   }
   impl->rs = std::move(*rs);
-  impl->logger->info("rolling shutter: {}", impl->rs.selection.reason);
-  const int rs_delay = impl->rs.delayed != nullptr ? impl->rs.delayed->DelayFrames() : 0;
-  if (rs_delay > options.lookahead_frames) {
-    return Fail(ErrorCode::kInvalidArgument,
-                "--lookahead {} is too short for the rolling-shutter source {}, which needs {} "
-                "frames",
-                options.lookahead_frames, impl->rs.selection.source->Name(), rs_delay);
-  }
-  auto stage = MotionStage::Create(options.stabilize, clip, &impl->rs.selection, impl->logger,
-                                   options.lookahead_frames - rs_delay);
+  impl->logger->info("rolling shutter: {}", impl->rs.reason);
+  auto stage = MotionStage::Create(options.stabilize, clip, &impl->rs, impl->logger,
+                                   options.lookahead_frames);
   if (!stage) {
     return Propagate(std::move(stage.error()));
   }
   impl->stage = std::move(*stage);
   impl->renderer = std::make_unique<FrameRenderer>(
-      RenderGeometry{clip.width, clip.height, clip.width, clip.height, impl->rs.selection.camera},
+      RenderGeometry{clip.width, clip.height, clip.width, clip.height, impl->rs.camera},
       options.stabilize);
   return std::unique_ptr<OnlineStabilizer>(new OnlineStabilizer(std::move(impl)));
 }
@@ -116,34 +88,17 @@ Status OnlineStabilizer::Push(const Frame& frame, std::int64_t pts, double time_
   if (!observed) {
     return Propagate(std::move(observed.error()));
   }
-  FrameObservation& observation = observed->observation;
-  Status status;
-  if (s.rs.delayed == nullptr) {
-    status = s.Stage(observation, &picture);
-  } else {
-    status = s.rs.delayed->Observe(observation, &picture);
-    if (status) {
-      s.observed.push_back(std::move(observation));
-      status = s.StageDecided();
-    }
+  if (Status ok = s.stage->Push(observed->observation, &picture); !ok) {
+    return ok;
   }
-  if (status) {
-    s.frames.push_back({frame, pts});
-  }
-  return status;
+  s.TakeAnalyses();
+  s.frames.push_back({frame, pts});
+  return {};
 }
 
 Status OnlineStabilizer::Flush() {
   Impl& s = *impl_;
   s.flushed = true;
-  if (s.rs.delayed != nullptr) {
-    if (Status ok = s.rs.delayed->Finish(); !ok) {
-      return ok;
-    }
-    if (Status ok = s.StageDecided(); !ok) {
-      return ok;
-    }
-  }
   if (Status ok = s.stage->Finish(); !ok) {
     return ok;
   }

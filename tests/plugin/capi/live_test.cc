@@ -21,10 +21,13 @@ struct LiveRun {
 // Every frame is handed over, and released by the run's end.
 LiveRun RunLive(int lookahead, int frames, int width = kWidth, int height = kHeight,
                 rsstab_pixel_format format = RSSTAB_PIXEL_YUV420P,
-                const PixelLayout& layout = Yuv420Layout()) {
+                const PixelLayout& layout = Yuv420Layout(),
+                const OptionList& rolling_shutter = {{"rs", "off"}}) {
   LiveRun run;
-  const OptionsHandle options =
-      MakeOptions({{"rs", "off"}, {"threads", "1"}, {"lookahead", std::to_string(lookahead)}});
+  OptionList values = rolling_shutter;
+  values.emplace_back("threads", "1");
+  values.emplace_back("lookahead", std::to_string(lookahead));
+  const OptionsHandle options = MakeOptions(values);
   const rsstab_video video = MakeVideo(width, height, format);
   rsstab_instance* made = nullptr;
   EXPECT_EQ(rsstab_create_live(options.get(), &video, &made), RSSTAB_OK)
@@ -73,6 +76,30 @@ TEST(CapiLive, EveryFrameComesOutInOrderAfterTheLookahead) {
       const int expected = std::min(lookahead, kFrames - 1 - t);
       EXPECT_EQ(run.inside[i], static_cast<std::size_t>(expected)) << lookahead << " " << t;
     }
+  }
+}
+
+TEST(CapiLive, ReadoutMotionFromTracksKeepsTheDelay) {
+  constexpr int kFrames = 70;
+  const LiveRun run = RunLive(60, kFrames, kWidth, kHeight, RSSTAB_PIXEL_GRAY8, GrayLayout(),
+                              {{"rs", "tracks"}, {"readout", "15"}});
+  ASSERT_EQ(run.times.size(), static_cast<std::size_t>(kFrames));
+  for (int t = 0; t < kFrames; ++t) {
+    const auto i = static_cast<std::size_t>(t);
+    EXPECT_EQ(run.times[i], 100 + 3 * t);
+    EXPECT_EQ(run.inside[i], static_cast<std::size_t>(std::min(60, kFrames - 1 - t)));
+  }
+}
+
+TEST(CapiLive, SaysWhatReadoutMotionFromTracksNeeds) {
+  const rsstab_video video = MakeVideo(kWidth, kHeight, RSSTAB_PIXEL_GRAY8);
+  for (const OptionList& values :
+       {OptionList{{"rs", "tracks"}, {"lookahead", "60"}},
+        OptionList{{"rs", "fused"}, {"readout", "15"}, {"lookahead", "20"}}}) {
+    const OptionsHandle options = MakeOptions(values);
+    rsstab_instance* made = nullptr;
+    EXPECT_EQ(rsstab_create_live(options.get(), &video, &made), RSSTAB_ERROR_UNSUPPORTED);
+    EXPECT_THAT(rsstab_options_error(options.get()), ::testing::HasSubstr("--lookahead"));
   }
 }
 
