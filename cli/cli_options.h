@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "cli/commands/calibrate_options.h"
 #include "cli/commands/compare_options.h"
 #include "cli/commands/correct_options.h"
 #include "cli/commands/evaluate_options.h"
@@ -24,6 +25,7 @@ inline constexpr int kExitUsage = 2;
 enum class CommandId {
   kStabilize,
   kAnalyze,
+  kCalibrate,
   kRender,
   kCorrect,
   kInfo,
@@ -41,6 +43,7 @@ struct Invocation {
   bool json = false;          // info: for programs instead of people
   pipeline::StabilizeOptions stabilize;
   EncodeOptions encode;
+  CalibrateOptions calibrate;
   CorrectOptions correct;
   CompareOptions compare;
   SimulateOptions simulate;

@@ -2,6 +2,8 @@
 #include "cli/command_apps.h"
 
 #include <algorithm>
+#include <initializer_list>
+#include <string_view>
 
 #include "stabilizer/pipeline/version.h"
 
@@ -51,6 +53,17 @@ void AddOption(CLI::App& app, const OptionSpec<Options>& spec, Options& target) 
   option->group(spec.group);
   if (!spec.IsSwitch()) {
     option->type_name(spec.value_name);
+  }
+}
+
+// Those options of `table` that have one of these names.
+template <typename Options>
+void AddNamed(CLI::App& app, const OptionTable<Options>& table, Options& target,
+              std::initializer_list<std::string_view> names) {
+  for (const OptionSpec<Options>& spec : table) {
+    if (std::find(names.begin(), names.end(), spec.name) != names.end()) {
+      AddOption(app, spec, target);
+    }
   }
 }
 
@@ -115,6 +128,18 @@ std::vector<CommandText> BuildTexts() {
        "steady "
        "clip as often as wanted.",
        {{"rs-stabilize analyze shaky.mp4", "writes shaky.rsstab beside it"}}},
+      {CommandId::kCalibrate,
+       "calibrate",
+       "[OPTIONS] IN [-o CAMERA]",
+       "finds readout time, focal length and gyro offset from a clip",
+       "Looks at a clip once and prints what it tells about the camera that took it, how sure that "
+       "is, and what it would take to be surer. Best is a clip of a few seconds in which the "
+       "camera shakes while it turns on the spot; what it tells holds for every clip of that "
+       "camera in that mode.",
+       {{"rs-stabilize calibrate shaky.mp4", "for people"},
+        {"rs-stabilize calibrate shaky.mp4 -o phone.json --curves readout.svg",
+         "saves the camera, and draws the evidence"},
+        {"rs-stabilize other.mp4 --camera phone.json", "uses it"}}},
       {CommandId::kRender,
        "render",
        "[OPTIONS] IN [ANALYSIS] [-o OUT]",
@@ -140,7 +165,8 @@ std::vector<CommandText> BuildTexts() {
        "Prints the clip's streams, the gyro log and camera found, and where the motion inside a "
        "frame would be taken from.",
        {{"rs-stabilize info shaky.mp4", "for people"},
-        {"rs-stabilize info --json shaky.mp4", "for programs"}}},
+        {"rs-stabilize info --json shaky.mp4", "for programs"},
+        {"rs-stabilize info shaky.rsstab", "what an analysis file holds"}}},
       {CommandId::kCompare,
        "compare",
        "[OPTIONS] IN OUT",
@@ -233,6 +259,12 @@ std::unique_ptr<CLI::App> MakeCommandApp(CommandId id, Invocation& invocation) {
                     "Replace the analysis file if it exists.")
           ->group("Output");
       AddTable(*app, stabilize, invocation.stabilize, OptionStage::kAnalysis);
+      AddTable(*app, RunOptionTable(), invocation.run);
+      break;
+    case CommandId::kCalibrate:
+      AddTable(*app, CalibrateOptionTable(), invocation.calibrate);
+      AddNamed(*app, stabilize, invocation.stabilize,
+               {"gyro", "gyro-axes", "gyro-offset", "readout", "focal", "camera", "threads"});
       AddTable(*app, RunOptionTable(), invocation.run);
       break;
     case CommandId::kRender:

@@ -34,6 +34,37 @@ media::WriterOptions ToWriterOptions(const EncodeOptions& encode,
   return writer;
 }
 
+pipeline::ClipGeometry GeometryOf(const media::VideoInfo& clip) {
+  pipeline::ClipGeometry geometry{clip.width, clip.height};
+  if (clip.frame_rate.Value() > 0.0) {
+    geometry.frames_per_second = clip.frame_rate.Value();
+  }
+  return geometry;
+}
+
+// Shows `look` every frame of the clip in order, and the user how far that has come, within a pass
+// that the caller begins and ends. `pass`: its name in the list of times.
+Status ForEachFrame(ReadAhead& frames, const std::string& pass, const CommandContext& context,
+                    const std::function<Status(media::VideoFrame& frame)>& look) {
+  const std::string waiting = pass + ": wait for the decoder";
+  while (true) {
+    auto frame = context.times->Measure(waiting, [&] { return frames.Next(); });
+    if (CancelRequested()) {
+      return Stopped();
+    }
+    if (!frame) {
+      return Propagate(frame.error(), frames.info().path);
+    }
+    if (!*frame) {
+      return {};
+    }
+    if (Status status = look(**frame); !status) {
+      return status;
+    }
+    context.reporter->Update((*frame)->index + 1);
+  }
+}
+
 }  // namespace
 
 Result<std::unique_ptr<media::VideoReader>> OpenClip(const std::string& input,
@@ -81,40 +112,21 @@ Result<stabilizer::ClipAnalysis> AnalyzeClip(std::unique_ptr<media::VideoReader>
   if (!inputs) {
     return Propagate(inputs.error());
   }
-  pipeline::ClipGeometry geometry{info.width, info.height};
-  if (info.frame_rate.Value() > 0.0) {
-    geometry.frames_per_second = info.frame_rate.Value();
-  }
-  auto analyzer = pipeline::Analyzer::Create(options, geometry, std::move(*inputs), analysis_file,
-                                             context.logger);
+  auto analyzer = pipeline::Analyzer::Create(options, GeometryOf(info), std::move(*inputs),
+                                             analysis_file, context.logger);
   if (!analyzer) {
     return Propagate(analyzer.error());
   }
-
   context.reporter->BeginPass(number.pass, number.passes, "analyze", info.frame_count);
-  ReadAhead frames(std::move(clip));
   StageTimes& times = *context.times;
-  while (true) {
-    auto frame = times.Measure("Pass 1: wait for the decoder", [&] { return frames.Next(); });
-    if (CancelRequested()) {
-      return Stopped();
-    }
-    if (!frame) {
-      return Propagate(frame.error(), info.path);
-    }
-    if (!*frame) {
-      break;
-    }
-    const media::VideoFrame& picture = **frame;
-    if (Status status = times.Measure("Pass 1: look at the frames",
-                                      [&] {
-                                        return (*analyzer)->PushFrame(picture.frame.View(),
-                                                                      picture.pts, picture.time_s);
-                                      });
-        !status) {
-      return Propagate(status.error());
-    }
-    context.reporter->Update(picture.index + 1);
+  ReadAhead frames(std::move(clip));
+  Status status = ForEachFrame(frames, "Pass 1", context, [&](media::VideoFrame& picture) {
+    return times.Measure("Pass 1: look at the frames", [&] {
+      return (*analyzer)->PushFrame(picture.frame.View(), picture.pts, picture.time_s);
+    });
+  });
+  if (!status) {
+    return Propagate(std::move(status.error()));
   }
   auto analysis = times.Measure("Pass 1: motion and path of the clip", [&] {
     return (*analyzer)->Finish([] { return CancelRequested(); });
@@ -124,6 +136,31 @@ Result<stabilizer::ClipAnalysis> AnalyzeClip(std::unique_ptr<media::VideoReader>
   }
   context.reporter->EndPass();
   return analysis;
+}
+
+Result<pipeline::CalibrationReport> CalibrateClip(std::unique_ptr<media::VideoReader> clip,
+                                                  const pipeline::StabilizeOptions& options,
+                                                  const CommandContext& context) {
+  const media::VideoInfo info = clip->info();
+  auto inputs = ReadRsInputs(options, info, context.logger);
+  if (!inputs) {
+    return Propagate(inputs.error());
+  }
+  auto calibrator = pipeline::Calibrator::Create(options, GeometryOf(info), std::move(*inputs));
+  if (!calibrator) {
+    return Propagate(calibrator.error());
+  }
+  context.reporter->BeginPass(1, 1, "calibrate", info.frame_count);
+  ReadAhead frames(std::move(clip));
+  Status status = ForEachFrame(frames, "Pass 1", context, [&](media::VideoFrame& picture) {
+    return (*calibrator)->PushFrame(picture.frame.View(), picture.time_s);
+  });
+  if (!status) {
+    return Propagate(std::move(status.error()));
+  }
+  auto report = (*calibrator)->Finish();
+  context.reporter->EndPass();
+  return report;
 }
 
 Status RenderClip(std::unique_ptr<media::VideoReader> clip, SteadyClip output,
@@ -141,35 +178,25 @@ Status RenderClip(std::unique_ptr<media::VideoReader> clip, SteadyClip output,
   ReadAhead frames(std::move(clip));
   WriteBehind steady_clip(std::move(output.writer));
   StageTimes& times = *context.times;
-  while (true) {
-    auto frame = times.Measure("Pass 2: wait for the decoder", [&] { return frames.Next(); });
-    if (CancelRequested()) {
-      return Stopped();
-    }
-    if (!frame) {
-      return Propagate(frame.error(), info.path);
-    }
-    if (!*frame) {
-      break;
-    }
-    auto steady = times.Measure(
-        "Pass 2: render", [&] { return (*renderer)->Render((*frame)->frame, (*frame)->pts); });
-    if (!steady) {
-      return Propagate(steady.error());
-    }
-    if (observer) {
-      if (Status status = times.Measure("Pass 2: measure for this report",
-                                        [&] { return observer(**frame, *steady); });
-          !status) {
-        return status;
-      }
-    }
-    if (Status status = times.Measure("Pass 2: wait for the encoder",
-                                      [&] { return steady_clip.Write(std::move(*steady)); });
-        !status) {
-      return status;
-    }
-    context.reporter->Update((*frame)->index + 1);
+  Status rendered =
+      ForEachFrame(frames, "Pass 2", context, [&](media::VideoFrame& picture) -> Status {
+        auto steady = times.Measure(
+            "Pass 2: render", [&] { return (*renderer)->Render(picture.frame, picture.pts); });
+        if (!steady) {
+          return Propagate(steady.error());
+        }
+        if (observer) {
+          if (Status status = times.Measure("Pass 2: measure for this report",
+                                            [&] { return observer(picture, *steady); });
+              !status) {
+            return status;
+          }
+        }
+        return times.Measure("Pass 2: wait for the encoder",
+                             [&] { return steady_clip.Write(std::move(*steady)); });
+      });
+  if (!rendered) {
+    return rendered;
   }
   if (Status status = (*renderer)->Finish(); !status) {
     return status;

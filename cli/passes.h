@@ -12,6 +12,7 @@
 #include "cli/media/video_writer.h"
 #include "igf/base/result.h"
 #include "stabilizer/analysis_file.h"
+#include "stabilizer/pipeline/calibrator.h"
 #include "stabilizer/pipeline/stabilize_options.h"
 
 namespace rsstab::cli {
@@ -43,6 +44,11 @@ struct SteadyClip {
 [[nodiscard]] Result<stabilizer::ClipAnalysis> AnalyzeClip(
     std::unique_ptr<media::VideoReader> clip, const pipeline::StabilizeOptions& options,
     const std::string& analysis_file, PassNumber number, const CommandContext& context);
+
+// Looks at the whole clip and says what it tells about its camera. Errors as above.
+[[nodiscard]] Result<pipeline::CalibrationReport> CalibrateClip(
+    std::unique_ptr<media::VideoReader> clip, const pipeline::StabilizeOptions& options,
+    const CommandContext& context);
 
 // Sees each frame and what became of it, in order; an error ends the pass.
 using RenderObserver = std::function<Status(const media::VideoFrame& frame, const Frame& steady)>;

@@ -11,6 +11,7 @@
 #include "cli/cancellation.h"
 #include "cli/command_context.h"
 #include "cli/commands/analyze.h"
+#include "cli/commands/calibrate.h"
 #include "cli/commands/compare.h"
 #include "cli/commands/correct.h"
 #include "cli/commands/evaluate.h"
@@ -88,6 +89,8 @@ Status Dispatch(const Invocation& invocation, const CommandContext& context) {
       return RunStabilize(invocation, context);
     case CommandId::kAnalyze:
       return RunAnalyze(invocation, context);
+    case CommandId::kCalibrate:
+      return RunCalibrate(invocation, context);
     case CommandId::kRender:
       return RunRender(invocation, context);
     case CommandId::kInfo:

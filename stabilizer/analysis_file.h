@@ -49,6 +49,15 @@ struct ClipAnalysis {
   std::string rs_source = "none";  // "gyro", "none", ...
   std::string rs_reason;           // why that source, one sentence
   double readout_s = 0.0;
+  double readout_sigma_s = 0.0;  // one standard deviation; 0: given, or not asked for
+  // What is known of the shutter: "rolling", "global", "given", "unknown" (the clip does not tell),
+  // or empty where nobody asked.
+  std::string shutter;
+  double focal_px = 0.0;        // 0 where nobody asked
+  double focal_sigma_px = 0.0;  // one standard deviation; 0: given
+  bool focal_trusted = false;   // known; otherwise assumed
+  // The camera's rotation is all that moves the picture, and it is known.
+  bool rotation_is_known = false;
   std::optional<double> gyro_offset_s;
   std::optional<Camera> camera;  // of the analysed size
   std::string options;           // as given, "--name value ..." for the record

@@ -82,6 +82,12 @@ nlohmann::json ToJson(const ClipAnalysis& clip) {
                          {"rs_source", clip.rs_source},
                          {"rs_reason", clip.rs_reason},
                          {"readout_s", clip.readout_s},
+                         {"readout_sigma_s", clip.readout_sigma_s},
+                         {"shutter", clip.shutter},
+                         {"focal_px", clip.focal_px},
+                         {"focal_sigma_px", clip.focal_sigma_px},
+                         {"focal_trusted", clip.focal_trusted},
+                         {"rotation_is_known", clip.rotation_is_known},
                          {"options", clip.options}};
   if (clip.gyro_offset_s) {
     json["gyro_offset_s"] = *clip.gyro_offset_s;
@@ -113,6 +119,13 @@ ClipAnalysis FromJson(const nlohmann::json& json) {
   clip.rs_source = json.at("rs_source").get<std::string>();
   clip.rs_reason = json.at("rs_reason").get<std::string>();
   clip.readout_s = json.at("readout_s").get<double>();
+  // Written since the clip's own motion can tell.
+  clip.readout_sigma_s = json.value("readout_sigma_s", 0.0);
+  clip.shutter = json.value("shutter", std::string());
+  clip.focal_px = json.value("focal_px", 0.0);
+  clip.focal_sigma_px = json.value("focal_sigma_px", 0.0);
+  clip.focal_trusted = json.value("focal_trusted", false);
+  clip.rotation_is_known = json.value("rotation_is_known", false);
   clip.options = json.at("options").get<std::string>();
   if (json.contains("gyro_offset_s")) {
     clip.gyro_offset_s = json.at("gyro_offset_s").get<double>();

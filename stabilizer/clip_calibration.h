@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <optional>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "stabilizer/rs_motion_window.h"
@@ -33,6 +33,21 @@ enum class ShutterVerdict {
   kCannotBeTold,  // too little motion or texture: nothing should be corrected
   kGiven,         // the readout time was given
 };
+
+// "rolling", "global", "unknown" or "given", for files and programs.
+[[nodiscard]] constexpr std::string_view NameOf(ShutterVerdict verdict) {
+  switch (verdict) {
+    case ShutterVerdict::kRolling:
+      return "rolling";
+    case ShutterVerdict::kGlobal:
+      return "global";
+    case ShutterVerdict::kGiven:
+      return "given";
+    case ShutterVerdict::kCannotBeTold:
+      break;
+  }
+  return "unknown";
+}
 
 // Tracks that a rotation explains up to this, RMS at the picture's edge and at 640 px width, come
 // from a camera that only turns; walking past things moves them by more, and feigns a longer lens.

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "cli/commands/info_analysis.h"
 #include "cli/media/video_reader.h"
 #include "cli/passes.h"
 #include "cli/rs_inputs.h"
@@ -150,9 +151,23 @@ std::string CameraText(const Json& camera) {
   return text + "\n";
 }
 
+Status Print(const std::string& text) {
+  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
+    return Fail(ErrorCode::kIo, "standard output cannot be written");
+  }
+  return {};
+}
+
 }  // namespace
 
 Status RunInfo(const Invocation& invocation, const CommandContext& context) {
+  if (IsAnalysisFile(invocation.input)) {
+    const auto text = DescribeAnalysis(invocation.input, invocation.json);
+    if (!text) {
+      return Propagate(text.error());
+    }
+    return Print(*text);
+  }
   const pipeline::StabilizeOptions& options = invocation.stabilize;
   const auto reader = OpenClip(invocation.input, options, context.logger);
   if (!reader) {
@@ -182,10 +197,7 @@ Status RunInfo(const Invocation& invocation, const CommandContext& context) {
     text = ClipText(clip) + GyroText(gyro) + CameraText(camera) +
            "plan     rolling shutter: " + *plan + "\n";
   }
-  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
-    return Fail(ErrorCode::kIo, "standard output cannot be written");
-  }
-  return {};
+  return Print(text);
 }
 
 }  // namespace rsstab::cli

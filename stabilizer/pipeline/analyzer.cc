@@ -181,6 +181,15 @@ Result<stabilizer::ClipAnalysis> Analyzer::Finish(const std::function<bool()>& c
   clip.rs_source = s.selection.source ? s.selection.source->Name() : "none";
   clip.rs_reason = s.selection.reason;
   clip.readout_s = s.selection.readout_s;
+  if (s.selection.calibration) {
+    const stabilizer::ClipCalibration& calibration = *s.selection.calibration;
+    clip.readout_sigma_s = calibration.readout_s.sigma;
+    clip.shutter = stabilizer::NameOf(calibration.verdict);
+    clip.focal_px = calibration.focal.value * s.clip.width;
+    clip.focal_sigma_px = calibration.focal.sigma * s.clip.width;
+    clip.focal_trusted = calibration.focal.trusted;
+  }
+  clip.rotation_is_known = s.selection.rotation_is_known;
   clip.gyro_offset_s = s.selection.gyro_offset_s;
   clip.camera = s.selection.camera;
   for (const auto& option : StabilizeOptionTable()) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stabilizer/pipeline/calibrator.h"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "stabilizer/feature_tracks.h"
@@ -15,11 +13,6 @@ namespace rsstab::pipeline {
 namespace {
 
 using stabilizer::ClipCalibration;
-using stabilizer::ShutterVerdict;
-
-// Readouts below this share of the frame interval bend a picture by less than can be seen.
-constexpr double kVisibleReadout = 0.03;
-constexpr double kSigmasToBelieve = 3.0;
 
 CalibratedValue Given(double value) { return {value, 0.0, true, true, ""}; }
 
@@ -65,15 +58,8 @@ CalibratedValue FocalFromTracks(const ClipCalibration& calibration, int width) {
   return focal;
 }
 
-ShutterVerdict VerdictOf(const CalibratedValue& readout_s, double frame_interval_s) {
-  return std::abs(readout_s.value) >
-                 std::max(kSigmasToBelieve * readout_s.sigma, kVisibleReadout * frame_interval_s)
-             ? ShutterVerdict::kRolling
-             : ShutterVerdict::kGlobal;
-}
-
 // What the log adds: it sees the turn of the camera itself, so its word goes before the tracks'.
-void AddGyro(const Result<igf::GyroSyncResult>& sync, const ClipGeometry& clip,
+void AddGyro(const Result<igf::GyroSyncResult>& sync, const CameraKnowledge& known,
              CalibrationReport& report) {
   CalibratedValue& offset = report.gyro_offset_s.emplace();
   if (!sync) {
@@ -81,15 +67,15 @@ void AddGyro(const Result<igf::GyroSyncResult>& sync, const ClipGeometry& clip,
     return;
   }
   offset = {sync->offset_s, sync->offset_sigma_s, true, sync->offset_sigma_s == 0.0, ""};
-  if (!report.focal_px.given && sync->focal_is_trusted) {
-    report.focal_px = {sync->camera.fx,
-                       sync->focal_ratio_sigma / sync->focal_ratio * sync->camera.fx, true, false,
-                       ""};
+  const ClipCalibration log = CalibrationOf(*sync, known);
+  if (!report.focal_px.given && log.focal.trusted) {
+    const int width = known.camera.width;
+    report.focal_px = {log.focal.value * width, log.focal.sigma * width, true, false, ""};
     report.camera = sync->camera;
   }
-  if (!report.readout_s.given && sync->readout_is_trusted) {
-    report.readout_s = {sync->readout_s, sync->readout_sigma_s, true, false, ""};
-    report.verdict = VerdictOf(report.readout_s, 1.0 / clip.frames_per_second);
+  if (!report.readout_s.given && log.readout_s.trusted) {
+    report.readout_s = {log.readout_s.value, log.readout_s.sigma, true, false, ""};
+    report.verdict = log.verdict;
   }
 }
 
@@ -162,7 +148,7 @@ Result<CalibrationReport> Calibrator::Finish() {
   report.focal_px =
       known.focal_is_known ? Given(known.camera.fx) : FocalFromTracks(calibration, s.clip.width);
   if (s.inputs.gyro) {
-    AddGyro(BringIntoStep(s.options, known, s.inputs, evidence.tracks), s.clip, report);
+    AddGyro(BringIntoStep(s.options, known, s.inputs, evidence.tracks), known, report);
   }
   report.camera.fy *= report.focal_px.value / report.camera.fx;
   report.camera.fx = report.focal_px.value;

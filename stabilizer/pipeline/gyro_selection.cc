@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stabilizer/pipeline/gyro_selection.h"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -10,8 +12,16 @@
 namespace rsstab::pipeline {
 namespace {
 
+// A given offset may have been found by another program, or by hand: with RsChoice::kAuto the
+// tracks move it by this much if they are this sure.
+constexpr double kMaxCorrection_s = 20e-3;
+constexpr double kMaxCorrectionSigma_s = 0.5e-3;
 // Telemetry tracks lag or lead their video by exposure, readout and packet times.
 constexpr double kSharedClockSearchS = 0.25;
+
+// A readout below this bends no picture visibly.
+constexpr double kVisibleReadout_s = 1e-3;
+constexpr double kSigmasToBelieve = 3.0;
 
 // A log that tells nothing about the clip is a wrong log or a wrong offset.
 Status CheckOverlap(const igf::GyroLog& log, double offset_s, std::span<const PointTracks> tracks) {
@@ -42,9 +52,10 @@ Result<igf::GyroSyncResult> BringIntoStep(const StabilizeOptions& options,
     sync.search_s = kSharedClockSearchS;
   }
   sync.lens_is_known = known.lens_is_known;
+  const bool may_move = options.rs == RsChoice::kAuto;
   if (options.gyro_offset_s) {
     sync.initial_offset_s = *options.gyro_offset_s;
-    sync.search_s = 0.0;
+    sync.search_s = may_move ? kMaxCorrection_s : 0.0;
   }
   auto result = igf::SynchronizeGyro(tracks, *inputs.gyro, known.camera, sync);
   if (!result && !options.gyro_offset_s) {
@@ -60,8 +71,37 @@ Result<igf::GyroSyncResult> BringIntoStep(const StabilizeOptions& options,
     given.confidence = 1.0;
     result = given;
   }
-  result->offset_s = *options.gyro_offset_s;
+  const double correction_s = result->offset_s - *options.gyro_offset_s;
+  const bool is_sure = result->offset_sigma_s > 0.0 &&
+                       result->offset_sigma_s < kMaxCorrectionSigma_s &&
+                       std::abs(correction_s) > kSigmasToBelieve * result->offset_sigma_s;
+  if (!(may_move && is_sure && std::abs(correction_s) <= kMaxCorrection_s)) {
+    result->offset_s = *options.gyro_offset_s;
+    result->offset_sigma_s = 0.0;
+  }
   return result;
+}
+
+stabilizer::ClipCalibration CalibrationOf(const igf::GyroSyncResult& sync,
+                                          const CameraKnowledge& known) {
+  using stabilizer::ShutterVerdict;
+  const double width = known.camera.width;
+  stabilizer::ClipCalibration calibration;
+  calibration.focal = {known.camera.fx / width, 0.0, known.focal_is_known};
+  if (!known.focal_is_known && sync.focal_is_trusted) {
+    const double focal = sync.camera.fx / width;
+    calibration.focal = {focal, focal * sync.focal_ratio_sigma / sync.focal_ratio, true};
+  }
+  if (known.camera.readout_s) {
+    calibration.verdict = ShutterVerdict::kGiven;
+    calibration.readout_s = {*known.camera.readout_s, 0.0, true};
+  } else if (sync.readout_is_trusted) {
+    calibration.readout_s = {sync.readout_s, sync.readout_sigma_s, true};
+    const double limit_s = std::max(kSigmasToBelieve * sync.readout_sigma_s, kVisibleReadout_s);
+    calibration.verdict =
+        std::abs(sync.readout_s) > limit_s ? ShutterVerdict::kRolling : ShutterVerdict::kGlobal;
+  }
+  return calibration;
 }
 
 Result<RsSelection> SelectGyro(const StabilizeOptions& options, CameraKnowledge known,
@@ -73,6 +113,7 @@ Result<RsSelection> SelectGyro(const StabilizeOptions& options, CameraKnowledge 
   if (Status ok = CheckOverlap(*inputs.gyro, sync->offset_s, tracks); !ok) {
     return Propagate(std::move(ok.error()), inputs.gyro_origin);
   }
+  const CameraKnowledge known_before = known;
   const bool readout_given = known.camera.readout_s.has_value();
   // A lens found here bends the field only, which lives in recorded pixels: nobody asked for the
   // clip to be straightened. What follows the path sees a pinhole of the same scale at its centre.
@@ -101,10 +142,16 @@ Result<RsSelection> SelectGyro(const StabilizeOptions& options, CameraKnowledge 
   selection.readout_s = readout_s;
   selection.rotation_is_known = true;
   selection.gyro_offset_s = sync->offset_s;
+  selection.calibration = CalibrationOf(*sync, known_before);
   selection.reason = fmt::format(
-      "gyro log {} ({:.0f} Hz), offset {:.1f} ms, readout {:.1f} ms ({}), focal length {:.0f} px "
+      "gyro log {} ({:.0f} Hz), offset {:.1f} ms{}, readout {:.1f} ms ({}), focal length {:.0f} px "
       "({})",
-      inputs.gyro_origin, inputs.gyro->mean_rate_hz(), sync->offset_s * 1e3, readout_s * 1e3,
+      inputs.gyro_origin, inputs.gyro->mean_rate_hz(), sync->offset_s * 1e3,
+      options.gyro_offset_s && sync->offset_s != *options.gyro_offset_s
+          ? fmt::format(" (given: {:.1f} ms, moved to where the tracks clearly are)",
+                        *options.gyro_offset_s * 1e3)
+          : "",
+      readout_s * 1e3,
       readout_given              ? "given"
       : sync->readout_is_trusted ? "estimated"
                                  : "unknown: taken as a global shutter, give --readout",

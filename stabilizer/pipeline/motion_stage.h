@@ -33,7 +33,7 @@ struct RsSelection {
   // parallax): camera paths are then rotations.
   bool rotation_is_known = false;
   std::optional<double> gyro_offset_s;
-  std::optional<stabilizer::ClipCalibration> calibration;  // what the tracks told, if asked
+  std::optional<stabilizer::ClipCalibration> calibration;  // what the clip told, if asked
   std::string reason;  // one sentence for the log and the analysis file
 };
 

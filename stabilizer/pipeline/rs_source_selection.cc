@@ -103,8 +103,7 @@ std::string DescribeShutter(const stabilizer::ClipCalibration& calibration) {
       return fmt::format("the clip shows no rolling shutter (readout 0 +- {:.1f} ms; {})",
                          readout.sigma * 1e3, DescribeOpinions(calibration));
     case stabilizer::ShutterVerdict::kCannotBeTold:
-      return "the clip does not tell its readout time (too little changes of motion, or too little "
-             "texture): give --readout if you know it";
+      return "the clip does not tell its readout time";
     case stabilizer::ShutterVerdict::kGiven:
       break;
   }
@@ -238,6 +237,13 @@ Result<RsSelection> SelectRsSource(const StabilizeOptions& options, const ClipGe
   }
   if (!evidence.calibration) {
     return WithoutSource(known, "left alone: there is no gyro log, and the clip is not known yet");
+  }
+  if (evidence.calibration->verdict == stabilizer::ShutterVerdict::kCannotBeTold) {
+    logger->warn(
+        "the clip does not show whether its camera has a rolling shutter (its motion changes too "
+        "little, or too little can be tracked), so none is taken out; if it has one, give "
+        "--readout, or --camera with what `rs-stabilize calibrate` finds from a shakier clip of "
+        "the same camera");
   }
   return SelectFused(options, clip, known, *evidence.calibration);
 }

@@ -120,7 +120,8 @@ OptionTable<StabilizeOptions> BuildTable() {
   add(RealOption("gyro-offset", "S", &O::gyro_offset_s, {-86400.0, 86400.0}),
       OptionStage::kAnalysis,
       "Seconds to add to the log's clock to get the clip's. Found from the picture when not "
-      "given.");
+      "given; --rs auto moves it by up to 0.02 where the picture leaves no doubt, --rs gyro keeps "
+      "it.");
   add(RealOption("readout", "MS", &O::readout_s, {-1000.0, 1000.0}, 1e-3), OptionStage::kAnalysis,
       "Milliseconds from reading the first row of the sensor to the last; negative reads bottom to "
       "top, 0 is a global shutter. From the camera file or the log, or found, when not given.");

@@ -118,6 +118,14 @@ TEST(CliOptions, CommandsAreTheFirstWordOnly) {
   EXPECT_EQ(Parsed({"analyze", "clip.mp4", "-o", "a"}).analysis_file, "a");
   EXPECT_EQ(Parsed({"render", "clip.mp4", "a", "-o", "b"}).analysis_file, "a");
   EXPECT_EQ(Parsed({"info", "--json", "clip.mp4"}).command, CommandId::kInfo);
+  const Invocation calibrate = Parsed({"calibrate", "clip.mp4", "-o", "camera.json", "--curves",
+                                       "c.svg", "--gyro", "log.csv", "--json"});
+  EXPECT_EQ(calibrate.command, CommandId::kCalibrate);
+  EXPECT_EQ(calibrate.input, "clip.mp4");
+  EXPECT_EQ(calibrate.calibrate.output, "camera.json");
+  EXPECT_EQ(calibrate.calibrate.curves, "c.svg");
+  EXPECT_EQ(calibrate.stabilize.gyro_file, "log.csv");
+  EXPECT_TRUE(calibrate.calibrate.json);
   const Invocation compare = Parsed({"compare", "a.mp4", "b.mp4", "--truth", "folder"});
   EXPECT_EQ(compare.compare.input, "a.mp4");
   EXPECT_EQ(compare.compare.output, "b.mp4");

@@ -7,14 +7,19 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 namespace rsstab::testing {
 
-ProgramResult RunOrFail(std::vector<std::string> arguments) {
+ProgramResult RunRsStabilize(std::vector<std::string> arguments) {
   arguments.insert(arguments.end(), {"--progress", "none"});
   ProgramSettings settings;
   settings.timeout_s = 500.0;
-  ProgramResult run = RunProgram(RSSTAB_PROGRAM, arguments, settings);
+  return RunProgram(RSSTAB_PROGRAM, arguments, settings);
+}
+
+ProgramResult RunOrFail(std::vector<std::string> arguments) {
+  ProgramResult run = RunRsStabilize(std::move(arguments));
   EXPECT_EQ(run.exit_code, 0) << run.error;
   return run;
 }

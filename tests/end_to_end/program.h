@@ -10,8 +10,9 @@
 
 namespace rsstab::testing {
 
-// Runs the rs-stabilize that was built with this test, without progress; a failure of it is a
-// failure of the test.
+// Runs the rs-stabilize that was built with this test, without progress.
+ProgramResult RunRsStabilize(std::vector<std::string> arguments);
+// The same; a failure of it is a failure of the test.
 ProgramResult RunOrFail(std::vector<std::string> arguments);
 
 [[nodiscard]] std::string ReadText(const std::filesystem::path& path);

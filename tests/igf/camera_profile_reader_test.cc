@@ -120,6 +120,42 @@ TEST(CameraProfileReader, ReadsWhatItWrites) {
   EXPECT_EQ(files, 1U);  // no half-written leftovers
 }
 
+TEST(CameraProfileReader, WhatACalibrationDoesNotTrustIsNotKnown) {
+  CalibratedCamera found;
+  found.camera = Camera::Pinhole(640, 360, 480.0);
+  found.camera.readout_s = -0.015;
+  found.focal_sigma_px = 4.0;
+  found.readout_sigma_s = 3e-4;
+  for (const bool focal_trusted : {true, false}) {
+    for (const bool readout_trusted : {true, false}) {
+      found.focal_trusted = focal_trusted;
+      found.readout_trusted = readout_trusted;
+      const std::string text = FormatCameraJson(found);
+      const bool both = focal_trusted && readout_trusted;
+      EXPECT_THAT(text, HasSubstr(both ? "\"trusted\": true" : "\"trusted\": false"));
+      const auto profile = ParseCameraJson(text);
+      ASSERT_TRUE(profile.has_value()) << profile.error().message;
+      EXPECT_EQ(profile->focal_is_known, focal_trusted);
+      EXPECT_EQ(profile->camera.fx, focal_trusted ? 480.0 : kFocalPrior * 640.0);
+      EXPECT_EQ(profile->camera.readout_s, readout_trusted ? std::optional(-0.015) : std::nullopt);
+      EXPECT_EQ(profile->focal_sigma_px, 4.0);
+      EXPECT_EQ(profile->readout_sigma_s, 3e-4);
+      const auto larger = ProfileForVideo(*profile, 1280, 720);
+      ASSERT_TRUE(larger.has_value());
+      EXPECT_EQ(larger->focal_sigma_px, 8.0);
+      EXPECT_EQ(larger->focal_is_known, focal_trusted);
+    }
+  }
+  const std::string camera = R"({"width": 640, "height": 360, "fx": 480, "readout_s": 0.02)";
+  const auto untrusted = ParseCameraJson(camera + R"(, "trusted": false})");
+  ASSERT_TRUE(untrusted.has_value());
+  EXPECT_FALSE(untrusted->focal_is_known);
+  EXPECT_FALSE(untrusted->camera.readout_s);
+  EXPECT_THAT(ErrorOf(ParseCameraJson(camera + R"(, "trusted": "no"})")), HasSubstr("\"trusted\""));
+  EXPECT_THAT(ErrorOf(ParseCameraJson(camera + R"(, "focal_sigma_px": -1})")),
+              HasSubstr("\"focal_sigma_px\""));
+}
+
 constexpr char kLens[] = R"({
   "name": "Action camera", "calib_dimension": {"w": 4000, "h": 3000},
   "orig_dimension": {"w": 4000, "h": 3000}, "input_horizontal_stretch": 1.0,

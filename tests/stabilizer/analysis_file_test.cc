@@ -11,6 +11,7 @@
 #include <iterator>
 #include <string_view>
 
+#include "stabilizer/analysis_format_detail.h"
 #include "tests/support/test_paths.h"
 
 namespace rsstab::stabilizer {
@@ -44,6 +45,12 @@ ClipAnalysis SomeClip() {
   clip.rs_source = "gyro";
   clip.rs_reason = "a log\nwith \"quotes\"";
   clip.readout_s = -0.02;
+  clip.readout_sigma_s = 0.0005;
+  clip.shutter = "rolling";
+  clip.focal_px = 500.0;
+  clip.focal_sigma_px = 6.0;
+  clip.focal_trusted = true;
+  clip.rotation_is_known = true;
   clip.gyro_offset_s = 0.125;
   clip.camera = Camera::Pinhole(640, 360, 500.0);
   clip.options = "--smoothness 1";
@@ -74,6 +81,13 @@ TEST(AnalysisFile, RoundTrip) {
   EXPECT_EQ(clip.num_frames, kFrames);
   EXPECT_NEAR(clip.smallest_crop_ratio, 0.91, 1e-6);
   EXPECT_EQ(clip.rs_reason, SomeClip().rs_reason);
+  EXPECT_EQ(clip.readout_s, -0.02);
+  EXPECT_EQ(clip.readout_sigma_s, 0.0005);
+  EXPECT_EQ(clip.shutter, "rolling");
+  EXPECT_EQ(clip.focal_px, 500.0);
+  EXPECT_EQ(clip.focal_sigma_px, 6.0);
+  EXPECT_TRUE(clip.focal_trusted);
+  EXPECT_TRUE(clip.rotation_is_known);
   EXPECT_EQ(clip.gyro_offset_s, 0.125);
   EXPECT_EQ(clip.camera->fx, 500.0);
   for (int i = 0; i < kFrames; ++i) {
@@ -94,6 +108,19 @@ TEST(AnalysisFile, RoundTrip) {
   const auto end = (*reader)->Next();
   ASSERT_TRUE(end);
   EXPECT_FALSE(*end);
+}
+
+TEST(AnalysisFile, SummariesFromBeforeTheClipWasCalibratedAreRead) {
+  nlohmann::json summary = detail::ToJson(SomeClip());
+  for (const char* key : {"readout_sigma_s", "shutter", "focal_px", "focal_sigma_px",
+                          "focal_trusted", "rotation_is_known"}) {
+    ASSERT_EQ(summary.erase(key), 1U) << key;
+  }
+  const ClipAnalysis clip = detail::FromJson(summary);
+  EXPECT_EQ(clip.readout_s, -0.02);
+  EXPECT_EQ(clip.shutter, "");
+  EXPECT_EQ(clip.focal_px, 0.0);
+  EXPECT_FALSE(clip.rotation_is_known);
 }
 
 template <typename T>
