@@ -264,7 +264,8 @@ std::unique_ptr<CLI::App> MakeCommandApp(CommandId id, Invocation& invocation) {
     case CommandId::kCalibrate:
       AddTable(*app, CalibrateOptionTable(), invocation.calibrate);
       AddNamed(*app, stabilize, invocation.stabilize,
-               {"gyro", "gyro-axes", "gyro-offset", "readout", "focal", "camera", "threads"});
+               {"gyro", "gyro-axes", "gyro-offset", "readout", "focal", "camera", "model", "device",
+                "threads"});
       AddTable(*app, RunOptionTable(), invocation.run);
       break;
     case CommandId::kRender:

@@ -146,7 +146,8 @@ Result<pipeline::CalibrationReport> CalibrateClip(std::unique_ptr<media::VideoRe
   if (!inputs) {
     return Propagate(inputs.error());
   }
-  auto calibrator = pipeline::Calibrator::Create(options, GeometryOf(info), std::move(*inputs));
+  auto calibrator =
+      pipeline::Calibrator::Create(options, GeometryOf(info), std::move(*inputs), context.logger);
   if (!calibrator) {
     return Propagate(calibrator.error());
   }

@@ -67,6 +67,15 @@ std::string CurveText(const pipeline::EvidenceCurve& curve) {
   return text;
 }
 
+std::string OpinionText(const char* who, double value_s, double sigma_s) {
+  return fmt::format("              {} alone: {:.2f} +- {:.2f} ms\n", who, value_s * kMilliseconds,
+                     sigma_s * kMilliseconds);
+}
+
+Json OpinionJson(double value_s, double sigma_s) {
+  return {{"value", value_s}, {"sigma", sigma_s}};
+}
+
 Json ValueJson(const CalibratedValue& v) {
   Json json = {{"value", v.value}, {"sigma", v.sigma}};
   const bool has_interval = v.given || v.sigma > 0.0;
@@ -85,6 +94,12 @@ Json ValueJson(const CalibratedValue& v) {
 std::string FormatCalibrationText(const CalibrationReport& report, const std::string& clip) {
   std::string text = fmt::format("clip          {}\nshutter       {}\n", clip, VerdictText(report));
   text += "readout       " + ValueText(report.readout_s, kMilliseconds, "ms", 2);
+  if (!report.readout_s.given && report.tracks_readout_s) {
+    text += OpinionText("tracks", report.tracks_readout_s->value, report.tracks_readout_s->sigma);
+  }
+  if (report.pictures) {
+    text += OpinionText("single images", report.pictures->readout_s, report.pictures->sigma_s);
+  }
   text += "focal length  " + ValueText(report.focal_px, 1.0, "px", 1);
   if (report.gyro_offset_s) {
     text += report.gyro_offset_s->trusted
@@ -104,6 +119,12 @@ std::string FormatCalibrationJson(const CalibrationReport& report, const std::st
   json["clip"] = clip;
   json["verdict"] = stabilizer::NameOf(report.verdict);
   json["readout_s"] = ValueJson(report.readout_s);
+  json["tracks_readout_s"] = report.tracks_readout_s ? OpinionJson(report.tracks_readout_s->value,
+                                                                   report.tracks_readout_s->sigma)
+                                                     : Json(nullptr);
+  json["pictures_readout_s"] =
+      report.pictures ? OpinionJson(report.pictures->readout_s, report.pictures->sigma_s)
+                      : Json(nullptr);
   json["focal_px"] = ValueJson(report.focal_px);
   json["gyro_offset_s"] = report.gyro_offset_s ? ValueJson(*report.gyro_offset_s) : Json(nullptr);
   json["stretches"] = report.num_stretches;

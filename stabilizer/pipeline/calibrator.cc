@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stabilizer/pipeline/calibrator.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "stabilizer/feature_tracks.h"
@@ -56,6 +59,22 @@ CalibratedValue FocalFromTracks(const ClipCalibration& calibration, int width) {
         "guess";
   }
   return focal;
+}
+
+// With Gaussian errors, how likely it is that no skew remains after correcting with each candidate.
+EvidenceCurve CurveOf(const PictureReadout& pictures) {
+  EvidenceCurve curve{"single images", {}};
+  double best = -std::numeric_limits<double>::infinity();
+  for (const PictureReadout::Remainder& r : pictures.curve) {
+    if (r.sigma > 0.0) {
+      curve.points.push_back({r.readout_s, -0.5 * std::pow(r.skew / r.sigma, 2)});
+      best = std::max(best, curve.points.back().log_evidence);
+    }
+  }
+  for (stabilizer::ReadoutHypothesis& h : curve.points) {
+    h.log_evidence -= best;
+  }
+  return curve;
 }
 
 // What the log adds: it sees the turn of the camera itself, so its word goes before the tracks'.
@@ -143,6 +162,9 @@ Result<CalibrationReport> Calibrator::Finish() {
   }
   report.tracks_readout_s = calibration.tracks_readout_s;
   report.pictures = evidence.pictures;
+  if (evidence.pictures) {
+    report.curves.push_back(CurveOf(*evidence.pictures));
+  }
   report.readout_s =
       known.camera.readout_s ? Given(*known.camera.readout_s) : ReadoutFromTracks(calibration);
   report.focal_px =

@@ -36,7 +36,7 @@ struct CalibratedValue {
 
 // How well each readout time explains what one source saw.
 struct EvidenceCurve {
-  std::string source;  // "tracks"
+  std::string source;  // "tracks", "single images"
   std::vector<stabilizer::ReadoutHypothesis> points;
 };
 

@@ -22,6 +22,10 @@ CalibrationReport Upwards() {
   report.camera = Camera::Pinhole(640, 360, 512.0);
   report.camera.readout_s = -0.015;
   report.num_stretches = 3;
+  report.tracks_readout_s = stabilizer::Estimate{-0.0148, 0.0006, true};
+  report.pictures.emplace();
+  report.pictures->readout_s = -0.0155;
+  report.pictures->sigma_s = 0.002;
   report.curves.push_back({"tracks", {{-0.02, -12.5}, {-0.01, 0.0}, {0.0, -50.0}}});
   return report;
 }
@@ -33,6 +37,8 @@ TEST(Calibrate, TextTellsIntervalsTrustAndDirection) {
   EXPECT_THAT(text, HasSubstr("-15.00 ms, 95 % between -15.98 and -14.02 ms\n"));
   EXPECT_THAT(text, HasSubstr("512.0 px, 95 % between 361.5 and 662.5 px\n"));
   EXPECT_THAT(text, HasSubstr("not trusted: it moves past near things"));
+  EXPECT_THAT(text, HasSubstr("tracks alone: -14.80 +- 0.60 ms"));
+  EXPECT_THAT(text, HasSubstr("single images alone: -15.50 +- 2.00 ms"));
   EXPECT_THAT(text, HasSubstr("3 stretches"));
   EXPECT_THAT(text, HasSubstr("-10.0 ms"));  // the curve
   EXPECT_THAT(text, Not(HasSubstr("gyro")));
@@ -41,7 +47,7 @@ TEST(Calibrate, TextTellsIntervalsTrustAndDirection) {
   with_log.gyro_offset_s = {0.25, 0.0001, true, false, ""};
   EXPECT_THAT(FormatCalibrationText(with_log, "clip.mp4"),
               HasSubstr("gyro offset   250.00 ms, 95 % between 249.80 and 250.20 ms"));
-  with_log.gyro_offset_s = pipeline::CalibratedValue{.reason = "the log does not fit"};
+  with_log.gyro_offset_s.emplace().reason = "the log does not fit";
   EXPECT_THAT(FormatCalibrationText(with_log, "clip.mp4"),
               HasSubstr("gyro offset   not found: the log does not fit"));
 }
@@ -70,6 +76,8 @@ TEST(Calibrate, JsonHoldsTheSame) {
   EXPECT_EQ(json["readout_s"]["trusted"], true);
   EXPECT_EQ(json["focal_px"]["trusted"], false);
   EXPECT_EQ(json["focal_px"]["reason"], "it moves past near things");
+  EXPECT_EQ(json["tracks_readout_s"]["value"], -0.0148);
+  EXPECT_EQ(json["pictures_readout_s"]["sigma"], 0.002);
   EXPECT_TRUE(json["gyro_offset_s"].is_null());
   EXPECT_EQ(json["stretches"], 3);
   ASSERT_EQ(json["curves"].size(), 1U);
