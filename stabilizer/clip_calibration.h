@@ -49,9 +49,10 @@ enum class ShutterVerdict {
   return "unknown";
 }
 
-// Tracks that a rotation explains up to this, RMS at the picture's edge and at 640 px width, come
-// from a camera that only turns; walking past things moves them by more, and feigns a longer lens.
-inline constexpr double kMaxTurningParallax_px = 0.1;
+// Tracks that a rotation explains up to this, median over the picture and at 640 px width, come
+// from a camera that only turns (simulated: up to 0.04); walking past things moves them by more
+// (four hand-held clips: from 0.13), and feigns a longer lens.
+inline constexpr double kMaxTurningParallax_px = 0.08;
 
 // What is the same for the whole clip, as its tracks tell it.
 struct ClipCalibration {
@@ -63,8 +64,8 @@ struct ClipCalibration {
   double jerk_weight = 0.1;
   std::vector<ReadoutHypothesis> curve;  // in order of readout; empty when given
   std::size_t num_windows = 0;           // stretches of the clip that it is based on
-  // RMS motion between frames, at the picture's edge, that no rotation explains: px at 640 px
-  // width. Near 0 for a camera that only turns, or a scene that is far away.
+  // Motion between frames that no rotation explains, median over the picture: px at 640 px width.
+  // Near 0 for a camera that only turns, or a scene that is far away.
   double parallax_px = 0.0;
 };
 

@@ -133,6 +133,7 @@ struct RsMotionWindow::Impl {
   ceres::CauchyLoss loss{kCellLossScale};
   ceres::Problem problem;
   std::vector<ceres::ResidualBlockId> track_blocks;
+  std::vector<double> cell_sigmas;                  // of each of them, picture widths
   std::vector<ceres::ResidualBlockId> data_blocks;  // tracks and priors, without the jerk
   std::vector<ceres::ResidualBlockId> jerk_blocks;
   std::vector<double*> motion_blocks;  // free knots and parallax
@@ -173,6 +174,7 @@ struct RsMotionWindow::Impl {
         for (const std::size_t knot : knots) {
           parameters.push_back(state.Delta(knot));
         }
+        cell_sigmas.push_back(sigma);
         track_blocks.push_back(
             problem.AddResidualBlock(new RowTimedTrackCost(state, pair.from_time_s, pair.to_time_s,
                                                            cell, sigma, std::move(knots)),
@@ -313,12 +315,30 @@ std::vector<double> RsMotionWindow::LogEvidence(std::span<const double> jerk_wei
   return evidence;
 }
 
-double RsMotionWindow::Parallax() const {
-  double sum = 0.0;
-  for (const Eigen::Vector4d& p : impl_->parallax) {
-    sum += p.squaredNorm();
+double RsMotionWindow::Parallax() {
+  Impl& s = *impl_;
+  if (s.track_blocks.empty()) {
+    return 0.0;
   }
-  return 0.5 * kWidth * std::sqrt(sum / static_cast<double>(impl_->parallax.size()));
+  const std::vector<Eigen::Vector4d> fitted = s.parallax;
+  std::fill(s.parallax.begin(), s.parallax.end(), Eigen::Vector4d::Zero());
+  ceres::Problem::EvaluateOptions options;
+  options.residual_blocks = s.track_blocks;
+  options.apply_loss_function = false;
+  std::vector<double> residuals;
+  const bool is_valid = s.problem.Evaluate(options, nullptr, &residuals, nullptr, nullptr);
+  std::copy(fitted.begin(), fitted.end(), s.parallax.begin());
+  if (!is_valid) {
+    return std::numeric_limits<double>::infinity();
+  }
+  std::vector<double> distances_px(s.cell_sigmas.size());
+  for (std::size_t i = 0; i < distances_px.size(); ++i) {
+    distances_px[i] =
+        kWidth * s.cell_sigmas[i] * std::hypot(residuals[2 * i], residuals[2 * i + 1]);
+  }
+  const auto middle = distances_px.begin() + static_cast<std::ptrdiff_t>(distances_px.size() / 2);
+  std::nth_element(distances_px.begin(), middle, distances_px.end());
+  return *middle;
 }
 
 }  // namespace rsstab::stabilizer

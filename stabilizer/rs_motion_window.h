@@ -82,8 +82,9 @@ class RsMotionWindow {
   // says how stiff the motion is.
   [[nodiscard]] std::vector<double> LogEvidence(std::span<const double> jerk_weights);
 
-  // RMS of the motion, at the edge of the picture, that no rotation explains: px at 640 px width.
-  [[nodiscard]] double Parallax() const;
+  // Median distance, over the cells, between where a track ends and where the rotation alone says:
+  // px at 640 px width. Objects that move by themselves hardly count.
+  [[nodiscard]] double Parallax();
 
  private:
   struct Impl;

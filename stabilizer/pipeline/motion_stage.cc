@@ -208,7 +208,8 @@ struct MotionStage::Impl {
       }
     }
     stabilizer::GlobalMotionOptions global_options;
-    if (const auto predicted = PredictedMotion(previous_time_s, o.time_s)) {
+    const auto predicted = PredictedMotion(previous_time_s, o.time_s);
+    if (predicted) {
       global_options.predicted = *predicted;
       global_options.finest = MotionRung::kSimilarity;
     }
@@ -223,6 +224,11 @@ struct MotionStage::Impl {
       motion = {};
       motion.path_begins = true;
       logger->debug("frame {}: scene cut", num_frames);
+      return motion;
+    }
+    if (predicted && selection->only_turns) {
+      motion.to_from = *predicted;
+      motion.rung = MotionRung::kSimilarity;
       return motion;
     }
     const bool well_supported = global.rung == global_options.finest;

@@ -32,6 +32,8 @@ struct RsSelection {
   // The source's orientation is all that moves the picture (a gyro log, or tracks without
   // parallax): camera paths are then rotations.
   bool rotation_is_known = false;
+  // So well that whatever else moves is an object of the scene: nothing may follow it.
+  bool only_turns = false;
   std::optional<double> gyro_offset_s;
   std::optional<stabilizer::ClipCalibration> calibration;  // what the clip told, if asked
   std::string reason;  // one sentence for the log and the analysis file

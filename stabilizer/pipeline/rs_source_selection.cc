@@ -152,6 +152,7 @@ Result<RsSelection> SelectFused(const StabilizeOptions& options, const ClipGeome
   selection.source = std::move(*source);
   selection.readout_s = readout_s;
   selection.rotation_is_known = only_turns;
+  selection.only_turns = only_turns;
   selection.calibration = calibration;
   return selection;
 }
