@@ -17,6 +17,9 @@ namespace {
 constexpr double kWidth = 640.0;
 constexpr std::size_t kStretchPairs = 40;
 constexpr std::size_t kMinStretchPairs = 12;
+// From picture to picture, frame intervals: one frame may be missing, or shown twice.
+constexpr double kMinInterval = 0.5;
+constexpr double kMaxInterval = 2.5;
 constexpr std::size_t kMaxStretches = 6;
 constexpr std::size_t kCurveStretches = 3;
 // Readout times that are tried, frame intervals.
@@ -186,9 +189,15 @@ void Judge(double frame_interval_s, bool beats_global, ClipCalibration& result) 
 }  // namespace
 
 void ClipCalibrator::Push(FramePairCells pair) {
+  if (IsRepeat(pair)) {
+    repeated_since_s_ = repeated_since_s_.value_or(pair.from_time_s);
+    return;
+  }
+  pair.from_time_s = repeated_since_s_.value_or(pair.from_time_s);
+  repeated_since_s_.reset();
   const double interval_s = pair.to_time_s - pair.from_time_s;
-  const bool is_regular =
-      interval_s > 0.5 * options_.frame_interval_s && interval_s < 1.5 * options_.frame_interval_s;
+  const bool is_regular = interval_s > kMinInterval * options_.frame_interval_s &&
+                          interval_s < kMaxInterval * options_.frame_interval_s;
   if (pair.cells.empty() || !is_regular) {
     FinishStretch();
     return;

@@ -119,7 +119,8 @@ class ClipCalibrator {
 
   ClipCalibrationOptions options_;
   std::vector<FramePairCells> current_;
-  std::vector<Stretch> kept_;  // the most telling, best first
+  std::optional<double> repeated_since_s_;  // time of the picture that the last frame repeats
+  std::vector<Stretch> kept_;               // the most telling, best first
 };
 
 }  // namespace rsstab::stabilizer

@@ -8,14 +8,11 @@
 namespace rsstab::stabilizer {
 namespace {
 
-constexpr double kWidth = 640.0;
 // How many of the last pairs of a window the next one decides again: what follows a frame tells
 // about it as much as what precedes it.
 constexpr std::size_t kWindowPairs = kFusionDelayFrames;
 constexpr std::size_t kTailPairs = 20;
 constexpr int kIterations = 4;
-// A frame whose every cell stays this still repeats the one before; noise alone moves more.
-constexpr double kRepeatMotion = 0.01 / kWidth;
 // A camera on a stand is not a chain of repeats.
 constexpr int kMaxRepeats = 3;
 // Pictures that follow each other more quickly carry wrong timestamps, frame intervals: recorders
@@ -23,13 +20,6 @@ constexpr int kMaxRepeats = 3;
 constexpr double kMinInterval = 0.4;
 // Longer pauses tell nothing about the motion on either side.
 constexpr double kMaxInterval = 5.0;
-
-bool IsRepeat(const FramePairCells& pair) {
-  return !pair.cells.empty() &&
-         std::all_of(pair.cells.begin(), pair.cells.end(), [](const TrackCell& cell) {
-           return (cell.to - cell.from).norm() < kRepeatMotion;
-         });
-}
 
 }  // namespace
 

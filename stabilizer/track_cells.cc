@@ -14,6 +14,8 @@
 namespace rsstab::stabilizer {
 namespace {
 
+// A frame whose every cell stays this still repeats the one before; noise alone moves more.
+constexpr double kRepeatMotion = 0.01 / 640.0;
 constexpr int kCellRows = 12;
 constexpr int kCellColumns = 4;
 constexpr std::size_t kMinTracks = 20;
@@ -218,6 +220,13 @@ FramePairCells SummarizeTracks(const PointTracks& tracks, const Camera* lens) {
     }
   }
   return pair;
+}
+
+bool IsRepeat(const FramePairCells& pair) {
+  return !pair.cells.empty() &&
+         std::all_of(pair.cells.begin(), pair.cells.end(), [](const TrackCell& cell) {
+           return (cell.to - cell.from).norm() < kRepeatMotion;
+         });
 }
 
 }  // namespace rsstab::stabilizer

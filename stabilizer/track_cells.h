@@ -38,6 +38,9 @@ struct FramePairCells {
 // takes distortion out; null: a pinhole with its principal point in the middle. Any thread.
 [[nodiscard]] FramePairCells SummarizeTracks(const PointTracks& tracks, const Camera* lens);
 
+// True when the later frame shows the picture of the earlier one again.
+[[nodiscard]] bool IsRepeat(const FramePairCells& pair);
+
 }  // namespace rsstab::stabilizer
 
 #endif  // RSSTAB_STABILIZER_TRACK_CELLS_H_

@@ -138,6 +138,36 @@ TEST(ClipCalibrator, AForegroundObjectDoesNotMatter) {
   ExpectReadout(Calibrate(ShakyCamera(MotionPreset::kWalking, 0.02), object), 0.02);
 }
 
+TEST(ClipCalibrator, RepeatedAndMissingFramesDoNotMatter) {
+  const ShakyCamera camera(MotionPreset::kWalking, 0.025);
+  for (const bool repeats : {true, false}) {
+    ClipCalibrationOptions options;
+    options.frame_interval_s = kFrameS;
+    ClipCalibrator calibrator(options);
+    std::vector<double> content_s;
+    std::vector<double> told_s;
+    for (int i = 0; i < kFrames; ++i) {
+      if (i % 7 == 6 && !repeats) {
+        continue;
+      }
+      told_s.push_back(i * kFrameS);
+      content_s.push_back((i % 7 == 6 ? i - 1 : i) * kFrameS);
+    }
+    auto all = camera.Tracks(content_s);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (content_s[i] == content_s[i + 1]) {
+        for (PointMatch& m : all[i].matches) {
+          m.to = m.from;
+        }
+      }
+      all[i].from_time_s = told_s[i];
+      all[i].to_time_s = told_s[i + 1];
+      calibrator.Push(SummarizeTracks(all[i], nullptr));
+    }
+    ExpectReadout(calibrator.Calibrate(), 0.025);
+  }
+}
+
 // Steps shift the camera past a scene of which every point lies at its own depth.
 Change Parallax(double shift_px) {
   return [shift_px](PointTracks& tracks) {
