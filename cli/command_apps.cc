@@ -202,7 +202,7 @@ std::vector<CommandText> BuildTexts() {
         {"rs-stabilize evaluate --photos holidays --samples 16 --steps 8 --csv all.csv",
          "other sampling, every picture's figures"},
         {"rs-stabilize evaluate --dataset pairs:Fastec", "real pictures"},
-        {"rs-stabilize evaluate --dataset rs-real:RS_Real --split test --methods "
+        {"rs-stabilize evaluate --dataset rs-real:RS_Real --methods "
          "none,gyro,diffusion",
          "pictures with gyro logs or labels"},
         {"rs-stabilize evaluate --clips holidays --methods input,auto,off,vidstab",
