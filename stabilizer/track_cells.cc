@@ -14,8 +14,9 @@
 namespace rsstab::stabilizer {
 namespace {
 
-// A frame whose every cell stays this still repeats the one before; noise alone moves more.
-constexpr double kRepeatMotion = 0.01 / 640.0;
+// A frame whose cells move less than this, RMS, repeats the one before. Repeats that were encoded
+// again have 0.01 to 0.03 px; a hand moves a camera by a hundred times that.
+constexpr double kRepeatMotion = 0.05 / 640.0;
 constexpr int kCellRows = 12;
 constexpr int kCellColumns = 4;
 constexpr std::size_t kMinTracks = 20;
@@ -223,10 +224,12 @@ FramePairCells SummarizeTracks(const PointTracks& tracks, const Camera* lens) {
 }
 
 bool IsRepeat(const FramePairCells& pair) {
+  double sum_sq = 0.0;
+  for (const TrackCell& cell : pair.cells) {
+    sum_sq += (cell.to - cell.from).squaredNorm();
+  }
   return !pair.cells.empty() &&
-         std::all_of(pair.cells.begin(), pair.cells.end(), [](const TrackCell& cell) {
-           return (cell.to - cell.from).norm() < kRepeatMotion;
-         });
+         sum_sq < kRepeatMotion * kRepeatMotion * static_cast<double>(pair.cells.size());
 }
 
 }  // namespace rsstab::stabilizer
