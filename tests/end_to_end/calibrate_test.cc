@@ -76,7 +76,7 @@ TEST_F(CalibrateClip, FindsTheReadoutAndSavesTheCamera) {
 }
 
 TEST_F(CalibrateClip, TellsTheDirection) {
-  Simulate({"--motion", "vibration", "--readout", "-15"});
+  Simulate({"--motion", "walking", "--readout", "-15"});
   ExpectReadout(Calibrate(), -0.015);
 }
 

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <regex>
 
 #include "cli/report/base64.h"
 #include "cli/report/field_panels.h"
@@ -51,7 +50,13 @@ TEST(HtmlPage, ForbidsAndNamesNothingFromElsewhere) {
   const std::string html = EvilPage();
   EXPECT_THAT(html, HasSubstr("default-src 'none'"));
   EXPECT_THAT(html, HasSubstr("script-src " + CspHash(PageScript()) + ";"));
-  EXPECT_FALSE(std::regex_search(html, std::regex("(src|href)=.?(https?:|//)")));
+  for (const char* attribute : {"src=", "href="}) {
+    for (const char* place : {"http:", "https:", "//"}) {
+      for (const char* quote : {"", "'", "\""}) {
+        EXPECT_EQ(html.find(std::string(attribute) + quote + place), std::string::npos);
+      }
+    }
+  }
   EXPECT_THAT(html, Not(HasSubstr("@import")));
   EXPECT_THAT(html, Not(HasSubstr("url(")));
 }

@@ -4,9 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <regex>
+#include <sstream>
 
 namespace rsstab::report {
 namespace {
@@ -27,18 +28,25 @@ LineChart Ramp() {
 // The points of the n-th path of a class, "x y x y ...", gaps left in as letters.
 std::string PathOf(const std::string& svg, const std::string& css_class, int n = 0) {
   // The legend's samples come first; they start at M0.
-  const std::regex path("<path class=\"" + css_class + "\" d=\"(M[1-9][^\"]*)\"");
-  auto match = std::sregex_iterator(svg.begin(), svg.end(), path);
-  std::advance(match, n);
-  return match == std::sregex_iterator() ? "" : (*match)[1].str();
+  const std::string begin = "<path class=\"" + css_class + "\" d=\"";
+  for (auto at = svg.find(begin); at != std::string::npos; at = svg.find(begin, at + 1)) {
+    const std::string d =
+        svg.substr(at + begin.size(), svg.find('"', at + begin.size()) - at - begin.size());
+    if (d.size() > 1 && d[0] == 'M' && d[1] >= '1' && d[1] <= '9' && n-- == 0) {
+      return d;
+    }
+  }
+  return "";
 }
 
 std::vector<Eigen::Vector2d> PointsOf(const std::string& path) {
   std::vector<Eigen::Vector2d> points;
-  const std::regex pair("(-?[0-9.]+) (-?[0-9.]+)");
-  for (auto it = std::sregex_iterator(path.begin(), path.end(), pair); it != std::sregex_iterator();
-       ++it) {
-    points.emplace_back(std::stod((*it)[1]), std::stod((*it)[2]));
+  std::string numbers = path;
+  std::replace_if(
+      numbers.begin(), numbers.end(), [](char c) { return c >= 'A' && c <= 'z'; }, ' ');
+  std::istringstream stream(numbers);
+  for (double x = 0.0, y = 0.0; stream >> x >> y;) {
+    points.emplace_back(x, y);
   }
   return points;
 }
