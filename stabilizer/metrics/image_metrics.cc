@@ -102,4 +102,46 @@ Result<double> Ssim(const FrameView& a, const FrameView& b, PixelMask valid) {
   return cv::mean(numerator / denominator, pair->valid)[0];
 }
 
+Result<double> BlockSsim(const FrameView& a, const FrameView& b, PixelMask valid) {
+  constexpr int kSide = 8;
+  constexpr int kStep = 4;
+  constexpr double kPixels = kSide * kSide;
+  const auto pair = Prepare(a, b, valid);
+  if (!pair) {
+    return Propagate(pair.error());
+  }
+  cv::Mat x;
+  cv::Mat y;
+  pair->a.convertTo(x, CV_64F);
+  pair->b.convertTo(y, CV_64F);
+  const double peak = static_cast<double>((1 << a.layout.bit_depth) - 1);
+  const double c1 = (0.01 * peak) * (0.01 * peak);
+  const double c2 = (0.03 * peak) * (0.03 * peak);
+  double sum = 0.0;
+  int windows = 0;
+  for (int top = 0; top + kSide <= x.rows; top += kStep) {
+    for (int left = 0; left + kSide <= x.cols; left += kStep) {
+      const cv::Rect window(left, top, kSide, kSide);
+      if (cv::countNonZero(pair->valid(window)) < kSide * kSide) {
+        continue;
+      }
+      const cv::Mat wx = x(window);
+      const cv::Mat wy = y(window);
+      const double mean_x = cv::sum(wx)[0] / kPixels;
+      const double mean_y = cv::sum(wy)[0] / kPixels;
+      const double scale = 1.0 / (kPixels - 1.0);
+      const double var_x = (wx.dot(wx) - kPixels * mean_x * mean_x) * scale;
+      const double var_y = (wy.dot(wy) - kPixels * mean_y * mean_y) * scale;
+      const double cov = (wx.dot(wy) - kPixels * mean_x * mean_y) * scale;
+      sum += (2.0 * mean_x * mean_y + c1) * (2.0 * cov + c2) /
+             ((mean_x * mean_x + mean_y * mean_y + c1) * (var_x + var_y + c2));
+      ++windows;
+    }
+  }
+  if (windows == 0) {
+    return Fail(ErrorCode::kInvalidArgument, "No window of 8x8 valid pixels is left to compare.");
+  }
+  return sum / windows;
+}
+
 }  // namespace rsstab::stabilizer
