@@ -15,7 +15,7 @@
 #include "igf/base/result.h"
 #include "igf/camera_profile_reader.h"
 #include "stabilizer/clip_calibration.h"
-#include "stabilizer/pipeline/motion_stage.h"
+#include "stabilizer/pipeline/clip_geometry.h"
 #include "stabilizer/pipeline/rs_source_selection.h"
 #include "stabilizer/pipeline/stabilize_options.h"
 

@@ -1,42 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stabilizer/pipeline/motion_stage.h"
 
-#include <cmath>
+#include <algorithm>
 #include <deque>
 #include <utility>
-#include <variant>
 
-#include "igf/base/rotation.h"
-#include "stabilizer/crop_planner.h"
-#include "stabilizer/global_motion.h"
-#include "stabilizer/mesh_motion.h"
-#include "stabilizer/normalized_coordinates.h"
-#include "stabilizer/online_zoom_planner.h"
+#include "stabilizer/mesh_grid.h"
 #include "stabilizer/path_smoother.h"
-#include "stabilizer/pipeline/warp_assembly.h"
+#include "stabilizer/pipeline/crop_stage.h"
+#include "stabilizer/pipeline/frame_motion_estimator.h"
 #include "stabilizer/scene_cut.h"
 
 namespace rsstab::pipeline {
 namespace {
 
 using stabilizer::FrameAnalysis;
-using stabilizer::MotionRung;
-using stabilizer::RectifiedMatch;
 
-// The smoother's zoom hides most of every border; what is left is planned over this long to either
-// side of a frame that needs it.
-constexpr double kZoomReachS = 0.4;
 // A look-ahead is shared: this part of it is the zoom planner's, unless that wants less.
 constexpr int kZoomShare = 4;
-// Where the look-ahead is too short for the planner, zooming out is held back for kZoomHoldS and
-// then changes by no more than this a second.
-constexpr double kZoomHoldS = 2.0;
-constexpr double kMaxWideningPerS = 0.02;
 // Focal length where nobody knows it, in picture widths (64 degrees): phones and action cameras in
 // their linear modes lie between 0.6 and 1.0.
 constexpr double kDefaultFocalRatio = 0.8;
-// Steps of the fixed point that takes a recorded pixel to the corrected picture: x + G(x) = y.
-constexpr int kRectifySteps = 3;
 
 stabilizer::PathSmootherOptions SmootherOptions(const StabilizeOptions& options,
                                                 const ClipGeometry& clip,
@@ -61,8 +45,6 @@ stabilizer::PathSmootherOptions SmootherOptions(const StabilizeOptions& options,
   return smoother;
 }
 
-using AnyZoomPlanner = std::variant<stabilizer::ZoomPlanner, stabilizer::OnlineZoomPlanner>;
-
 // How a look-ahead is shared between rolling-shutter source, smoother and zoom planner.
 struct Lookahead {
   std::optional<int> smoother;
@@ -74,7 +56,7 @@ Lookahead ShareLookahead(std::optional<int> frames, double frames_per_second) {
   if (!frames) {
     return {};
   }
-  const auto wanted = 2 * static_cast<int>(std::lround(kZoomReachS * frames_per_second));
+  const int wanted = CropStage::WantedLookahead(frames_per_second);
   const int zoom = std::min(*frames / kZoomShare, wanted);
   Lookahead shared;
   shared.smoother = *frames - zoom;
@@ -84,98 +66,35 @@ Lookahead ShareLookahead(std::optional<int> frames, double frames_per_second) {
   return shared;
 }
 
-AnyZoomPlanner MakeZoomPlanner(std::optional<std::size_t> lookahead, double frames_per_second) {
-  if (!lookahead) {
-    return stabilizer::ZoomPlanner(
-        static_cast<std::size_t>(std::lround(kZoomReachS * frames_per_second)));
-  }
-  return stabilizer::OnlineZoomPlanner(
-      *lookahead, static_cast<std::size_t>(std::lround(kZoomHoldS * frames_per_second)),
-      kMaxWideningPerS / frames_per_second);
-}
-
 }  // namespace
 
 struct MotionStage::Impl {
   Impl(const StabilizeOptions& stabilize_options, const ClipGeometry& geometry,
        RsSelection* rs_selection, Logger log, const Lookahead& shared)
-      : options(stabilize_options),
-        clip(geometry),
+      : clip(geometry),
         selection(rs_selection),
         logger(std::move(log)),
         mesh(stabilize_options.mesh_columns, stabilize_options.mesh_rows,
              static_cast<double>(geometry.height) / geometry.width),
-        mesh_solver(mesh),
         lookahead(shared),
-        zoom(MakeZoomPlanner(shared.zoom, geometry.frames_per_second)) {}
+        motion_estimator(geometry, rs_selection, mesh, logger),
+        crop(stabilize_options, geometry, rs_selection, shared.zoom) {}
 
-  StabilizeOptions options;
   ClipGeometry clip;
   RsSelection* selection;
   Logger logger;
   stabilizer::MeshGrid mesh;
-  stabilizer::MeshMotionSolver mesh_solver;
-  std::unique_ptr<stabilizer::PathSmoother> smoother;
   Lookahead lookahead;
-  AnyZoomPlanner zoom;
+  FrameMotionEstimator motion_estimator;
+  std::unique_ptr<stabilizer::PathSmoother> smoother;
+  CropStage crop;
 
-  std::int64_t num_frames = 0;    // decided
+  std::int64_t num_frames = 0;    // that the source has answered for, or had to
   std::int64_t num_observed = 0;  // shown to the source
   stabilizer::LumaFingerprint observed_fingerprint{};
   std::int64_t num_without_rs = 0;  // frames that the RS source could not tell
-  MotionField previous_field;
-  double previous_time_s = 0.0;
-  stabilizer::LumaFingerprint previous_fingerprint{};
   std::deque<FrameObservation> waiting_for_source;
   std::deque<FrameAnalysis> waiting_for_path;
-  std::deque<FrameAnalysis> waiting_for_zoom;
-  std::vector<FrameAnalysis> ready;
-
-  // Recorded pixel (proxy size) -> rectified, normalised. Empty where the lens has no ray.
-  [[nodiscard]] std::optional<Eigen::Vector2d> Rectify(const Eigen::Vector2f& proxy_pixel,
-                                                       const PointTracks& tracks,
-                                                       const MotionField& field) const {
-    const Eigen::Vector2d n =
-        stabilizer::ToNormalized(proxy_pixel.cast<double>(), tracks.width, tracks.height);
-    // The proxy may round its height: scale each axis to the full picture.
-    const Eigen::Vector2d recorded((proxy_pixel.x() + 0.5) * clip.width / tracks.width - 0.5,
-                                   (proxy_pixel.y() + 0.5) * clip.height / tracks.height - 0.5);
-    const bool lens = selection->camera && selection->camera->model != LensModel::kPinhole;
-    if (field.columns() == 0 && !lens) {
-      return n;
-    }
-    Eigen::Vector2d p = recorded;
-    if (field.columns() != 0) {
-      for (int i = 0; i < kRectifySteps; ++i) {
-        p = recorded - field.Sample(p);
-      }
-    }
-    if (lens) {
-      const auto ray = selection->camera->UnprojectPixel(p);
-      if (!ray) {
-        return std::nullopt;
-      }
-      const Eigen::Vector3d ideal = selection->camera->K() * *ray;
-      p = ideal.hnormalized();
-    }
-    return stabilizer::ToNormalized(p, clip.width, clip.height);
-  }
-
-  // What the RS source knows of the turn between two frames, normalised; empty when nothing.
-  [[nodiscard]] std::optional<Eigen::Matrix3d> PredictedMotion(double from_s, double to_s) const {
-    if (!selection->rotation_is_known || !selection->camera) {
-      return std::nullopt;
-    }
-    const auto from = selection->source->CameraFromWorld(from_s);
-    const auto to = selection->source->CameraFromWorld(to_s);
-    if (!from || !to) {
-      return std::nullopt;
-    }
-    const Eigen::Matrix3d to_from = stabilizer::NormalizedFromPixels(clip.width, clip.height) *
-                                    RotationHomography(selection->camera->K(), *to, *from) *
-                                    stabilizer::PixelsFromNormalized(clip.width, clip.height);
-    return Eigen::Matrix3d(to_from / to_from(2, 2));
-  }
 
   [[nodiscard]] MotionField EstimateField(const FrameObservation& o, const FrameView* image) {
     if (!selection->source) {
@@ -191,56 +110,6 @@ struct MotionStage::Impl {
     return motion->field;
   }
 
-  [[nodiscard]] stabilizer::FrameMotion EstimateMotion(const FrameObservation& o,
-                                                       const MotionField& field) {
-    stabilizer::FrameMotion motion;
-    if (num_frames == 0) {
-      motion.path_begins = true;
-      return motion;
-    }
-    std::vector<RectifiedMatch> matches;
-    matches.reserve(o.tracks.matches.size());
-    for (const PointMatch& m : o.tracks.matches) {
-      const auto from = Rectify(m.from, o.tracks, previous_field);
-      const auto to = Rectify(m.to, o.tracks, field);
-      if (from && to) {
-        matches.push_back({*from, *to});
-      }
-    }
-    stabilizer::GlobalMotionOptions global_options;
-    const auto predicted = PredictedMotion(previous_time_s, o.time_s);
-    if (predicted) {
-      global_options.predicted = *predicted;
-      global_options.finest = MotionRung::kSimilarity;
-    }
-    const stabilizer::GlobalMotion global =
-        stabilizer::EstimateGlobalMotion(matches, global_options);
-    motion.to_from = global.to_from;
-    motion.rung = global.rung;
-    const stabilizer::SceneChangeEvidence evidence = {
-        stabilizer::FingerprintDistance(o.fingerprint, previous_fingerprint), o.attempted_points,
-        global.num_inliers};
-    if (stabilizer::IsSceneCut(evidence)) {
-      motion = {};
-      motion.path_begins = true;
-      logger->debug("frame {}: scene cut", num_frames);
-      return motion;
-    }
-    if (predicted && selection->only_turns) {
-      motion.to_from = *predicted;
-      motion.rung = MotionRung::kSimilarity;
-      return motion;
-    }
-    const bool well_supported = global.rung == global_options.finest;
-    if (well_supported) {
-      motion.local = mesh_solver.Solve(matches, global.to_from);
-      if (!motion.local.empty()) {
-        motion.rung = MotionRung::kMesh;
-      }
-    }
-    return motion;
-  }
-
   // A cut as far as it can be told before rolling shutter is taken out.
   [[nodiscard]] bool BeginsScene(const FrameObservation& o) const {
     return stabilizer::IsSceneCut(
@@ -253,10 +122,7 @@ struct MotionStage::Impl {
     frame.pts = observation.pts;
     frame.fingerprint = observation.fingerprint;
     frame.rs_field = EstimateField(observation, image);
-    const stabilizer::FrameMotion motion = EstimateMotion(observation, frame.rs_field);
-    previous_field = frame.rs_field;
-    previous_time_s = observation.time_s;
-    previous_fingerprint = observation.fingerprint;
+    const stabilizer::FrameMotion motion = motion_estimator.Push(observation, frame.rs_field);
     ++num_frames;
     waiting_for_path.push_back(std::move(frame));
     if (Status ok = smoother->Push(motion); !ok) {
@@ -292,22 +158,7 @@ struct MotionStage::Impl {
           vertices[i] = (update.mesh_update[i] * clip.width).cast<float>();
         }
       }
-      double allowed = stabilizer::LargestCropRatio(
-          AssembleWarp(frame, clip.width, clip.height, selection->camera));
-      if (options.zoom == ZoomMode::kFixed && options.fixed_zoom) {
-        allowed = std::min(allowed, 1.0 / *options.fixed_zoom);
-      }
-      std::visit([&](auto& planner) { planner.Push(allowed, frame.path_begins); }, zoom);
-      waiting_for_zoom.push_back(std::move(frame));
-    }
-    TakeZooms();
-  }
-
-  void TakeZooms() {
-    for (const double ratio : std::visit([](auto& planner) { return planner.TakeReady(); }, zoom)) {
-      waiting_for_zoom.front().crop_ratio = ratio;
-      ready.push_back(std::move(waiting_for_zoom.front()));
-      waiting_for_zoom.pop_front();
+      crop.Push(std::move(frame));
     }
   }
 };
@@ -351,7 +202,7 @@ Result<std::unique_ptr<MotionStage>> MotionStage::Create(const StabilizeOptions&
 
 Status MotionStage::Update(const StabilizeOptions& options) {
   Impl& s = *impl_;
-  s.options = options;
+  s.crop.Update(options);
   return s.smoother->Update(SmootherOptions(options, s.clip, *s.selection, s.lookahead.smoother));
 }
 
@@ -395,8 +246,7 @@ Status MotionStage::Finish() {
     return ok;
   }
   s.TakeUpdates();
-  std::visit([](auto& planner) { planner.Finish(); }, s.zoom);
-  s.TakeZooms();
+  s.crop.Finish();
   if (s.num_without_rs > 0) {
     s.logger->warn("{} of {} frames keep their rolling shutter: the {} source has no data for them",
                    s.num_without_rs, s.num_frames, s.selection->source->Name());
@@ -404,6 +254,6 @@ Status MotionStage::Finish() {
   return {};
 }
 
-std::vector<FrameAnalysis> MotionStage::TakeReady() { return std::exchange(impl_->ready, {}); }
+std::vector<FrameAnalysis> MotionStage::TakeReady() { return impl_->crop.TakeReady(); }
 
 }  // namespace rsstab::pipeline

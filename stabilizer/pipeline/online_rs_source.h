@@ -4,7 +4,7 @@
 
 #include "igf/base/log.h"
 #include "igf/base/result.h"
-#include "stabilizer/pipeline/motion_stage.h"
+#include "stabilizer/pipeline/clip_geometry.h"
 #include "stabilizer/pipeline/online_options.h"
 #include "stabilizer/pipeline/rs_source_selection.h"
 

@@ -12,8 +12,9 @@
 #include "igf/base/result.h"
 #include "igf/gyro_log.h"
 #include "stabilizer/clip_calibration.h"
-#include "stabilizer/pipeline/motion_stage.h"
+#include "stabilizer/pipeline/clip_geometry.h"
 #include "stabilizer/pipeline/readout_from_pictures.h"
+#include "stabilizer/pipeline/rs_selection.h"
 #include "stabilizer/pipeline/stabilize_options.h"
 
 namespace rsstab::pipeline {
