@@ -10,6 +10,13 @@
 
 namespace rsstab::evaluation {
 
+Result<MethodAnswer> EstimateOrDecline(MotionMethod& method, const MethodInput& input,
+                                       bool& declined) {
+  auto answer = method.Estimate(input);
+  declined = !answer && answer.error().code == ErrorCode::kUntrustworthy;
+  return declined ? NoCorrection().Estimate(input) : answer;
+}
+
 Result<MethodAnswer> NoCorrection::Estimate(const MethodInput& input) {
   MethodAnswer answer{MotionField(input.rs.width, input.rs.height, 2, 2), {}};
   answer.field.set_reference_row(input.ReferenceRow());

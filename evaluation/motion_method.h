@@ -62,6 +62,11 @@ class MotionMethod {
   [[nodiscard]] virtual Result<MethodAnswer> Estimate(const MethodInput& input) = 0;
 };
 
+// Asks a method, and leaves the picture as it is (the zero field, `declined`) where the method says
+// that the picture does not tell. Errors: those of Estimate but kUntrustworthy.
+[[nodiscard]] Result<MethodAnswer> EstimateOrDecline(MotionMethod& method, const MethodInput& input,
+                                                     bool& declined);
+
 // Leaves every picture as it is: the zero field.
 class NoCorrection final : public MotionMethod {
  public:

@@ -67,13 +67,9 @@ double MeanChange(const ErrorField& now, const ErrorField& before) {
 Result<MotionField> AskMethod(const LabelledPicture& picture, const MethodInput& input,
                               MotionMethod& method, MethodFigures& figures) {
   const auto begin = std::chrono::steady_clock::now();
-  auto answer = method.Estimate(input);
+  auto answer = EstimateOrDecline(method, input, figures.declined);
   figures.ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-  if (!answer && answer.error().code == ErrorCode::kUntrustworthy) {
-    figures.declined = true;
-    answer = NoCorrection().Estimate(input);
-  }
   if (!answer) {
     return Propagate(answer.error(), figures.method);
   }

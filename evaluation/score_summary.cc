@@ -39,6 +39,9 @@ MethodSummary SummariseMethod(const Group& group, std::size_t method, std::uint6
   }
   MethodSummary summary;
   summary.method = group.front()->methods[method].method;
+  for (const SampleRecord* sample : group) {
+    summary.declined += sample->methods[method].declined ? 1 : 0;
+  }
   summary.epe_px = Mean(epe);
   summary.epe_median_px = Quantile(epe, 0.5);
   summary.epe_p90_px = Quantile(epe, 0.9);

@@ -18,6 +18,7 @@ namespace rsstab::evaluation {
 // One method over a group of pictures. Means over the pictures unless said otherwise.
 struct MethodSummary {
   std::string method;
+  std::size_t declined = 0;  // pictures left as they are because they did not tell
   double epe_px = 0.0;
   double epe_median_px = 0.0;
   double epe_p90_px = 0.0;

@@ -33,7 +33,7 @@ Result<MethodScore> ScoreMethod(const SyntheticSample& sample, MotionMethod& met
   MethodScore score;
   score.method = method.Name();
   const auto begin = std::chrono::steady_clock::now();
-  const auto answer = method.Estimate(InputOf(sample));
+  const auto answer = EstimateOrDecline(method, InputOf(sample), score.declined);
   score.ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   if (!answer) {
@@ -106,6 +106,13 @@ Result<SampleRecord> ScoreSample(const SyntheticSample& sample, MethodSet& metho
   return record;
 }
 
+Result<SyntheticSample> MakeSample(const FrameView& photo, const std::filesystem::path& path,
+                                   MotionClass motion_class, std::uint64_t seed) {
+  auto sample = MakeSyntheticSample(photo, motion_class,
+                                    SampleSeed(seed, path.filename().string(), motion_class));
+  return sample ? std::move(sample) : Propagate(sample.error(), path.string());
+}
+
 // Everything that one photograph gives.
 struct PhotoResult {
   std::vector<SampleRecord> samples;
@@ -122,10 +129,9 @@ Status JudgePhoto(const std::filesystem::path& path, bool with_skew,
   WorkerPool workers(1);  // the photographs are what runs in parallel
   const std::string name = path.filename().string();
   for (const MotionClass motion_class : kClasses) {
-    const auto sample = MakeSyntheticSample(photo->View(), motion_class,
-                                            SampleSeed(options.seed, name, motion_class));
+    const auto sample = MakeSample(photo->View(), path, motion_class, options.seed);
     if (!sample) {
-      return Propagate(sample.error(), path.string());
+      return Propagate(sample.error());
     }
     auto record = ScoreSample(*sample, methods, workers);
     if (!record) {
@@ -188,6 +194,37 @@ Result<SyntheticRecords> RunSyntheticProtocol(std::span<const std::filesystem::p
                       records.failures.front().second.message);
   }
   return records;
+}
+
+Result<PictureInspection> InspectSyntheticSample(const std::filesystem::path& photo,
+                                                 MotionClass motion_class, std::uint64_t seed,
+                                                 MethodSet& methods) {
+  const auto picture = LoadPhoto(photo);
+  if (!picture) {
+    return Propagate(picture.error());
+  }
+  auto sample = MakeSample(picture->View(), photo, motion_class, seed);
+  if (!sample) {
+    return Propagate(sample.error());
+  }
+  PictureInspection inspection;
+  for (const auto& method : methods.methods) {
+    bool declined = false;
+    auto answer = EstimateOrDecline(*method, InputOf(*sample), declined);
+    if (!answer) {
+      return Propagate(answer.error(), method->Name());
+    }
+    inspection.answers.push_back({method->Name(), std::move(answer->field)});
+  }
+  LabelledPicture& labelled = inspection.picture;
+  labelled.reference_row = sample->truth.reference_row();
+  labelled.rs = std::move(sample->rs);
+  labelled.gs = std::move(sample->gs);
+  labelled.truth = std::move(sample->displacement);
+  labelled.valid = std::move(sample->valid);
+  labelled.camera = sample->camera;
+  labelled.source = photo.filename().string();
+  return inspection;
 }
 
 }  // namespace rsstab::evaluation

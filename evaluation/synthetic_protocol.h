@@ -12,6 +12,7 @@
 
 #include "evaluation/for_each_item.h"
 #include "evaluation/motion_method.h"
+#include "evaluation/picture_protocol.h"
 #include "evaluation/readout_curve.h"
 #include "evaluation/skew_response.h"
 #include "evaluation/spread_coverage.h"
@@ -29,6 +30,7 @@ struct SyntheticOptions {
 // What one method made of one picture.
 struct MethodScore {
   std::string method;
+  bool declined = false;       // it said that the picture does not tell: left as it is
   double epe_px = 0.0;         // end-point error over the pixels that the frame recorded
   double horizontal_px = 0.0;  // mean of its |x| part
   double vertical_px = 0.0;    // mean of its |y| part
@@ -62,6 +64,14 @@ struct SyntheticRecords {
 [[nodiscard]] Result<SyntheticRecords> RunSyntheticProtocol(
     std::span<const std::filesystem::path> photos, const SyntheticOptions& options,
     const MethodFactory& factory, const EvaluationProgress& progress = {});
+
+// Makes one of a photograph's pictures again, and asks the methods about it, exactly as
+// RunSyntheticProtocol does with this seed, for those who want to see more than figures.
+// Errors: those of the photograph and the methods.
+[[nodiscard]] Result<PictureInspection> InspectSyntheticSample(const std::filesystem::path& photo,
+                                                               MotionClass motion_class,
+                                                               std::uint64_t seed,
+                                                               MethodSet& methods);
 
 }  // namespace rsstab::evaluation
 

@@ -113,7 +113,9 @@ Status RunEvaluate(const EvaluateOptions& options, const Logger& logger, std::os
   }
   return WriteReport<SyntheticReport>(
       options, out, [&] { return EvaluateSynthetic(options, *factory, logger, progress); },
-      [](const auto& report, const auto& stages) { return MakeEvaluationPage(report, stages); });
+      [&](const auto& report, const auto& stages) {
+        return MakeEvaluationPage(report, options, *factory, stages);
+      });
 }
 
 }  // namespace rsstab::cli

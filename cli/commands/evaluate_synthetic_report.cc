@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+
 #include "cli/commands/evaluate_report_detail.h"
 #include "cli/commands/evaluate_synthetic.h"
 
@@ -29,16 +31,20 @@ std::string GroupTitle(const GroupSummary& group) {
 }
 
 std::string GroupText(const GroupSummary& group) {
-  std::string text = fmt::format(
-      "\n{}\n{:<12}{:>7}{:>8}{:>7}{:>6}{:>7}{:>6}{:>7}{:>6}{:>9}{:>18}{:>7}{:>7}{:>8}{:>8}\n",
-      GroupTitle(group), "method", "EPE", "median", "p90", "%", "u", "%", "v", "%", "change",
-      "95% interval", "PSNR", "SSIM", "valid%", "ms");
+  std::size_t width = 12;
   for (const MethodSummary& m : group.methods) {
-    text += fmt::format("{:<12}", m.method) + Cell(m.epe_px, 7, 2) + Cell(m.epe_median_px, 8, 2) +
-            Cell(m.epe_p90_px, 7, 2) + Cell(kPercent * m.epe_ratio, 6, 0) +
-            Cell(m.horizontal_px, 7, 2) + Cell(kPercent * m.horizontal_ratio, 6, 0) +
-            Cell(m.vertical_px, 7, 2) + Cell(kPercent * m.vertical_ratio, 6, 0) +
-            Cell(m.difference_px, 9, 2) +
+    width = std::max(width, m.method.size() + 2);
+  }
+  std::string text = fmt::format(
+      "\n{}\n{:<{}}{:>5}{:>7}{:>8}{:>7}{:>6}{:>7}{:>6}{:>7}{:>6}{:>9}{:>18}{:>7}{:>7}{:>8}{:>8}\n",
+      GroupTitle(group), "method", width, "left", "EPE", "median", "p90", "%", "u", "%", "v", "%",
+      "change", "95% interval", "PSNR", "SSIM", "valid%", "ms");
+  for (const MethodSummary& m : group.methods) {
+    text += fmt::format("{:<{}}{:>5}", m.method, width, m.declined) + Cell(m.epe_px, 7, 2) +
+            Cell(m.epe_median_px, 8, 2) + Cell(m.epe_p90_px, 7, 2) +
+            Cell(kPercent * m.epe_ratio, 6, 0) + Cell(m.horizontal_px, 7, 2) +
+            Cell(kPercent * m.horizontal_ratio, 6, 0) + Cell(m.vertical_px, 7, 2) +
+            Cell(kPercent * m.vertical_ratio, 6, 0) + Cell(m.difference_px, 9, 2) +
             fmt::format("{:>18}", IntervalText(m.difference_interval, 2)) + Cell(m.psnr_db, 7, 2) +
             Cell(m.ssim, 7, 3) + Cell(kPercent * m.valid_share, 8, 1) + Cell(m.ms, 8, 1) + "\n";
   }
@@ -107,7 +113,8 @@ Json MethodJson(const MethodSummary& m) {
           {"psnr", OrNull(m.psnr_db)},
           {"ssim", OrNull(m.ssim)},
           {"valid", OrNull(m.valid_share)},
-          {"ms", OrNull(m.ms)}};
+          {"ms", OrNull(m.ms)},
+          {"declined", m.declined}};
 }
 
 Json GroupJson(const GroupSummary& group) {
@@ -165,7 +172,8 @@ std::string FormatText(const SyntheticReport& report) {
   text += CoverageText(report.groups);
   text += SkewText(report.skew);
   return text +
-         "\nEPE, u (horizontal part), v (vertical part) in px at 800x600; % of the uncorrected "
+         "\nleft: pictures left as they are because they did not tell; EPE, u (horizontal part), v "
+         "(vertical part) in px at 800x600; % of the uncorrected "
          "figure; change of the EPE against no correction; ms with whatever else was running\n";
 }
 
@@ -195,16 +203,17 @@ std::string FormatJson(const SyntheticReport& report) {
 std::string FormatCsv(const SyntheticReport& report) {
   std::string text =
       "photo,structured,motion,focal_widths,top_to_bottom,photo_per_pixel,method,epe,u,v,psnr,ssim,"
-      "valid,ms\n";
+      "valid,ms,declined\n";
   for (const evaluation::SampleRecord& sample : report.samples) {
     for (const MethodScore& m : sample.methods) {
       text += fmt::format(
           "{},{},{},{:.4f},{},{:.4f},{},{:.4f},{:.4f},{:.4f},{:.3f},{:.5f},{:.5f},"
-          "{:.2f}\n",
+          "{:.2f},{}\n",
           Field(sample.photo), sample.structured ? 1 : 0,
           evaluation::MotionClassName(sample.motion_class), sample.focal_widths,
-          sample.top_to_bottom ? 1 : 0, sample.photo_per_pixel, m.method, m.epe_px, m.horizontal_px,
-          m.vertical_px, m.psnr_db, m.ssim, m.valid_share, m.ms);
+          sample.top_to_bottom ? 1 : 0, sample.photo_per_pixel, Field(m.method), m.epe_px,
+          m.horizontal_px, m.vertical_px, m.psnr_db, m.ssim, m.valid_share, m.ms,
+          m.declined ? 1 : 0);
     }
   }
   return text;

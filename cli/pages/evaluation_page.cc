@@ -11,6 +11,7 @@
 #include "cli/pages/evaluation_tables.h"
 #include "cli/pages/page_parts.h"
 #include "cli/pages/picture_exhibits.h"
+#include "cli/pages/synthetic_exhibits.h"
 
 namespace rsstab::cli {
 namespace {
@@ -95,6 +96,8 @@ std::vector<report::LineChart> ClipPaths(const ClipRecord& clip) {
 }  // namespace
 
 Result<std::string> MakeEvaluationPage(const SyntheticReport& report,
+                                       const EvaluateOptions& options,
+                                       const evaluation::MethodFactory& factory,
                                        const std::vector<StageTime>& stages) {
   HtmlPage html =
       BeginPage("synthetic-val", report.header,
@@ -106,6 +109,9 @@ Result<std::string> MakeEvaluationPage(const SyntheticReport& report,
     charts.push_back(std::move(chart));
   }
   html.Add(charts);
+  if (Status status = AddPictures(report, options, factory, html); !status) {
+    return Propagate(status.error());
+  }
   return EndPage(report.header, stages, report.samples.size(), "picture", html);
 }
 

@@ -13,9 +13,11 @@
 
 namespace rsstab::cli {
 
-// The reports of `evaluate` as pages: tables, charts, and for data sets of pictures some of them
-// with what each method made of it. Errors: those of making the pictures.
+// The reports of `evaluate` as pages: tables, charts, and of pictures some of them with what each
+// method made of it. Errors: those of making the pictures.
 [[nodiscard]] Result<std::string> MakeEvaluationPage(const SyntheticReport& report,
+                                                     const EvaluateOptions& options,
+                                                     const evaluation::MethodFactory& factory,
                                                      const std::vector<StageTime>& stages);
 [[nodiscard]] Result<std::string> MakeEvaluationPage(const ClipsReport& report,
                                                      const std::vector<StageTime>& stages);

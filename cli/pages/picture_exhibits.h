@@ -3,21 +3,15 @@
 #define RSSTAB_CLI_PAGES_PICTURE_EXHIBITS_H_
 
 #include <cstddef>
-#include <string>
 #include <vector>
 
 #include "cli/commands/evaluate_pictures.h"
+#include "cli/pages/picture_panels.h"
 #include "cli/report/html_page.h"
 #include "evaluation/labelled_picture.h"
 #include "evaluation/motion_method.h"
 
 namespace rsstab::cli {
-
-// A picture that a report shows: the place of its record, and why.
-struct ChosenPicture {
-  std::size_t record = 0;
-  std::string reason;  // "gains most": what the method does there
-};
 
 // The method whose pictures are shown: of those that estimate (are told no motion), the one with
 // the smallest error, else the highest PSNR; the first of all when there is none but "none".

@@ -4,11 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 #include <stdexcept>
 
 #include "evaluation/score_summary.h"
+#include "evaluation/synthetic_sample.h"
 #include "igf/base/whole_file.h"
+#include "stabilizer/metrics/field_metrics.h"
 #include "tests/evaluation/test_methods.h"
 #include "tests/evaluation/test_photos.h"
 #include "tests/support/test_paths.h"
@@ -150,6 +153,53 @@ TEST_F(SyntheticProtocolTest, BrokenPhotosAreNamedAndLeftOut) {
   const auto none_left = RunSyntheticProtocol(broken, {}, TruthAndZero);
   ASSERT_FALSE(none_left);
   EXPECT_EQ(none_left.error().code, ErrorCode::kCorruptData);
+}
+
+TEST_F(SyntheticProtocolTest, AnInspectionIsOfTheSamePicture) {
+  const auto photos = Photos(1);
+  const auto records = RunSyntheticProtocol(photos, {}, TruthAndZero);
+  ASSERT_TRUE(records) << records.error().message;
+  MethodSet methods = TruthAndZero().value();
+  const auto inspection = InspectSyntheticSample(photos[0], MotionClass::kOscillation,
+                                                 SyntheticOptions().seed, methods);
+  ASSERT_TRUE(inspection) << inspection.error().message;
+  ASSERT_EQ(inspection->answers.size(), 3U);
+  const auto oscillation = std::find_if(
+      records->samples.begin(), records->samples.end(),
+      [](const SampleRecord& r) { return r.motion_class == MotionClass::kOscillation; });
+  const LabelledPicture& picture = inspection->picture;
+  for (std::size_t m = 0; m < 3; ++m) {
+    const auto error = stabilizer::CompareFields(PixelDisplacements(inspection->answers[m].field),
+                                                 picture.truth, picture.valid);
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->length, oscillation->methods[m].epe_px);
+  }
+}
+
+// Does not find its way in any picture.
+class UnsureMethod final : public MotionMethod {
+ public:
+  [[nodiscard]] std::string Name() const override { return "unsure"; }
+  [[nodiscard]] Result<MethodAnswer> Estimate(const MethodInput& /*input*/) override {
+    return Fail(ErrorCode::kUntrustworthy, "there are no lines");
+  }
+};
+
+TEST_F(SyntheticProtocolTest, WhereAMethodDoesNotTellThePictureStaysAndIsCounted) {
+  const auto records = RunSyntheticProtocol(Photos(1), {}, []() -> Result<MethodSet> {
+    MethodSet set;
+    set.methods.push_back(std::make_unique<NoCorrection>());
+    set.methods.push_back(std::make_unique<UnsureMethod>());
+    return set;
+  });
+  ASSERT_TRUE(records) << records.error().message;
+  for (const SampleRecord& sample : records->samples) {
+    EXPECT_TRUE(sample.methods[1].declined);
+    EXPECT_EQ(sample.methods[1].epe_px, sample.methods[0].epe_px);
+  }
+  const auto groups = SummariseSamples(records->samples, 1);
+  EXPECT_EQ(groups[0].methods[0].declined, 0U);
+  EXPECT_EQ(groups[0].methods[1].declined, groups[0].pictures);
 }
 
 TEST_F(SyntheticProtocolTest, StopsWhenAsked) {

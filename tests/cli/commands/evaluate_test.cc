@@ -101,6 +101,7 @@ TEST(Evaluate, ReportsHoldEveryFigure) {
   EXPECT_THAT(text, Not(HasSubstr("nan")));
 
   const std::string csv = FormatCsv(*report);
+  EXPECT_THAT(csv.substr(0, csv.find('\n')), HasSubstr(",declined"));
   // A head, and 2 photos x 5 motions x 2 methods.
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 21);
   EXPECT_THAT(csv, HasSubstr("0.png,1,skew-twist,"));
