@@ -38,4 +38,8 @@ std::optional<Eigen::Quaterniond> GyroMotionSource::CameraFromWorld(double time_
   return track_.CameraFromWorld(time_s);
 }
 
+std::optional<Eigen::Quaterniond> GyroMotionSource::TurnBetween(double from_s, double to_s) const {
+  return track_.Covers(from_s, to_s) ? RsMotionSource::TurnBetween(from_s, to_s) : std::nullopt;
+}
+
 }  // namespace rsstab::igf

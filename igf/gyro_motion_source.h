@@ -27,6 +27,8 @@ class GyroMotionSource final : public RsMotionSource {
   // Errors: kUntrustworthy where the log does not cover the frame's readout.
   [[nodiscard]] Result<RsMotion> EstimateMotion(const FrameContext& frame) override;
   [[nodiscard]] std::optional<Eigen::Quaterniond> CameraFromWorld(double time_s) const override;
+  [[nodiscard]] std::optional<Eigen::Quaterniond> TurnBetween(double from_s,
+                                                              double to_s) const override;
 
  private:
   GyroMotionSource(Camera camera, double readout_s, OrientationTrack track, const FieldGrid& grid);

@@ -3,6 +3,7 @@
 #define RSSTAB_STABILIZER_ANALYSIS_FILE_H_
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -16,6 +17,14 @@
 #include "stabilizer/luma_proxy.h"
 
 namespace rsstab::stabilizer {
+
+// Where the camera looked while a frame's middle row was exposed.
+struct FrameOrientation {
+  Eigen::Quaterniond camera_from_world = Eigen::Quaterniond::Identity();
+  // Frames of one number share a world frame, which is free; a cut or a gap begins another one, and
+  // orientations on its two sides are not comparable.
+  std::uint32_t world = 0;
+};
 
 // What pass 1 found out about one frame, and all that pass 2 needs to render it.
 struct FrameAnalysis {
@@ -31,6 +40,8 @@ struct FrameAnalysis {
   MotionField mesh_update;
   // RS field, px of the analysed size; default-made = none.
   MotionField rs_field;
+  // Where the source of the rolling-shutter motion knows it. Not needed to render.
+  std::optional<FrameOrientation> orientation;
 };
 
 // What pass 1 found out about the clip.

@@ -14,6 +14,23 @@ namespace {
 constexpr int kMaxGridSide = 512;
 constexpr float kQuantizationSteps = 32767.0F;
 
+constexpr std::uint16_t kOrientationPart = 1;
+constexpr std::uint16_t kOrientationSize = 4 + 4 * 8;
+// A unit quaternion in doubles is within 1e-15 of its length.
+constexpr double kUnitTolerance = 1e-9;
+
+// Empty when it is no rotation.
+std::optional<FrameOrientation> GetOrientation(ByteSource& source) {
+  FrameOrientation orientation;
+  orientation.world = source.Get<std::uint32_t>();
+  for (double& part : orientation.camera_from_world.coeffs()) {
+    part = source.Get<double>();
+  }
+  // Not a number is not within.
+  const double error = std::abs(orientation.camera_from_world.norm() - 1.0);
+  return error <= kUnitTolerance ? std::optional(orientation) : std::nullopt;
+}
+
 }  // namespace
 
 std::uint32_t Checksum(std::span<const std::uint8_t> bytes) {
@@ -66,6 +83,41 @@ std::optional<MotionField> GetField(ByteSource& source, int width, int height) {
     d = {x, y};
   }
   return field;
+}
+
+void PutOptionalParts(ByteSink& sink, const FrameAnalysis& frame) {
+  if (!frame.orientation) {
+    return;
+  }
+  sink.Put(kOrientationPart);
+  sink.Put(kOrientationSize);
+  sink.Put(frame.orientation->world);
+  const Eigen::Quaterniond camera_from_world = frame.orientation->camera_from_world.normalized();
+  for (const double part : camera_from_world.coeffs()) {
+    sink.Put(part);
+  }
+}
+
+bool GetOptionalParts(ByteSource& source, FrameAnalysis& frame) {
+  while (source.remaining() > 0) {
+    const auto kind = source.Get<std::uint16_t>();
+    const auto size = source.Get<std::uint16_t>();
+    if (!source.ok() || size > source.remaining()) {
+      return false;
+    }
+    if (kind != kOrientationPart) {
+      source.Skip(size);
+      continue;
+    }
+    if (size != kOrientationSize || frame.orientation) {
+      return false;
+    }
+    frame.orientation = GetOrientation(source);
+    if (!frame.orientation) {
+      return false;
+    }
+  }
+  return true;
 }
 
 nlohmann::json ToJson(const ClipAnalysis& clip) {

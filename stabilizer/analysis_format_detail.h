@@ -38,6 +38,12 @@ void PutField(ByteSink& sink, const MotionField& field);
 // Empty when the bytes make no sense.
 [[nodiscard]] std::optional<MotionField> GetField(ByteSource& source, int width, int height);
 
+// What a record may hold beyond its fields: parts with a number and a length, so that a reader
+// skips those that it does not know.
+void PutOptionalParts(ByteSink& sink, const FrameAnalysis& frame);
+// Takes all that is left. False when the bytes make no sense.
+[[nodiscard]] bool GetOptionalParts(ByteSource& source, FrameAnalysis& frame);
+
 [[nodiscard]] nlohmann::json ToJson(const ClipAnalysis& clip);
 // Throws nlohmann::json::exception on a missing key or a wrong type.
 [[nodiscard]] ClipAnalysis FromJson(const nlohmann::json& json);

@@ -164,7 +164,8 @@ Result<FrameAnalysis> AnalysisReader::Impl::ReadRecord() {
   }
   auto mesh_update = GetField(body, clip.width, clip.height);
   auto rs_field = mesh_update ? GetField(body, clip.width, clip.height) : std::nullopt;
-  if (!rs_field || !body.ok() || !frame.rectified_from_output.allFinite() ||
+  if (!rs_field || !body.ok() || !GetOptionalParts(body, frame) ||
+      !frame.rectified_from_output.allFinite() ||
       !(frame.crop_ratio > 0.0 && frame.crop_ratio <= 1.0)) {
     return Damaged("a record makes no sense");
   }

@@ -101,6 +101,7 @@ Status AnalysisWriter::Append(const FrameAnalysis& frame) {
   }
   PutField(body, frame.mesh_update);
   PutField(body, frame.rs_field);
+  PutOptionalParts(body, frame);
   ByteSink prefix;
   prefix.Put(static_cast<std::uint32_t>(body.bytes().size()));
   prefix.Put(Checksum(body.bytes()));

@@ -54,6 +54,10 @@ class ByteSource {
     position_ += sizeof(T);
     return value;
   }
+  void Skip(std::size_t size) {
+    ok_ = ok_ && size <= remaining();
+    position_ += ok_ ? size : 0;
+  }
   [[nodiscard]] bool ok() const { return ok_; }
   [[nodiscard]] std::size_t remaining() const { return bytes_.size() - position_; }
 

@@ -64,6 +64,14 @@ class RsMotionSource {
     (void)time_s;
     return std::nullopt;
   }
+  // How the camera turned from one time to another, to_camera_from_from_camera. Empty where the
+  // source does not know both, or does not know one against the other (a gap in the log, a cut).
+  [[nodiscard]] virtual std::optional<Eigen::Quaterniond> TurnBetween(double from_s,
+                                                                      double to_s) const {
+    const auto from = CameraFromWorld(from_s);
+    const auto to = CameraFromWorld(to_s);
+    return from && to ? std::optional<Eigen::Quaterniond>(*to * from->conjugate()) : std::nullopt;
+  }
 };
 
 }  // namespace rsstab

@@ -38,14 +38,14 @@ std::optional<Eigen::Matrix3d> FrameMotionEstimator::PredictedMotion(double from
   if (!selection_->rotation_is_known || !selection_->camera) {
     return std::nullopt;
   }
-  const auto from = selection_->source->CameraFromWorld(from_s);
-  const auto to = selection_->source->CameraFromWorld(to_s);
-  if (!from || !to) {
+  const auto turn = selection_->source->TurnBetween(from_s, to_s);
+  if (!turn) {
     return std::nullopt;
   }
-  const Eigen::Matrix3d to_from = stabilizer::NormalizedFromPixels(clip_.width, clip_.height) *
-                                  RotationHomography(selection_->camera->K(), *to, *from) *
-                                  stabilizer::PixelsFromNormalized(clip_.width, clip_.height);
+  const Eigen::Matrix3d to_from =
+      stabilizer::NormalizedFromPixels(clip_.width, clip_.height) *
+      RotationHomography(selection_->camera->K(), *turn, Eigen::Quaterniond::Identity()) *
+      stabilizer::PixelsFromNormalized(clip_.width, clip_.height);
   return Eigen::Matrix3d(to_from / to_from(2, 2));
 }
 

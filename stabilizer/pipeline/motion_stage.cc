@@ -9,6 +9,7 @@
 #include "stabilizer/path_smoother.h"
 #include "stabilizer/pipeline/crop_stage.h"
 #include "stabilizer/pipeline/frame_motion_estimator.h"
+#include "stabilizer/pipeline/orientation_recorder.h"
 #include "stabilizer/scene_cut.h"
 
 namespace rsstab::pipeline {
@@ -93,6 +94,7 @@ struct MotionStage::Impl {
   std::int64_t num_observed = 0;  // shown to the source
   stabilizer::LumaFingerprint observed_fingerprint{};
   std::int64_t num_without_rs = 0;  // frames that the RS source could not tell
+  OrientationRecorder orientations;
   std::deque<FrameObservation> waiting_for_source;
   std::deque<FrameAnalysis> waiting_for_path;
 
@@ -122,6 +124,9 @@ struct MotionStage::Impl {
     frame.pts = observation.pts;
     frame.fingerprint = observation.fingerprint;
     frame.rs_field = EstimateField(observation, image);
+    if (selection->source) {
+      frame.orientation = orientations.Next(*selection->source, observation.time_s);
+    }
     const stabilizer::FrameMotion motion = motion_estimator.Push(observation, frame.rs_field);
     ++num_frames;
     waiting_for_path.push_back(std::move(frame));

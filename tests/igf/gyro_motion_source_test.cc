@@ -29,6 +29,24 @@ TEST(GyroMotionSource, AnswersFromTheTrackAlone) {
   EXPECT_FALSE(source.CameraFromWorld(1.0));
 }
 
+TEST(GyroMotionSource, TellsATurnButNotOverAGap) {
+  const auto track = OrientationTrack::Create(
+      {0.0, 1.0, 2.0, 3.0},
+      {Eigen::Quaterniond::Identity(), ExpSo3(Eigen::Vector3d(0.0, 0.5, 0.0)),
+       ExpSo3(Eigen::Vector3d(0.0, 1.0, 0.0)), ExpSo3(Eigen::Vector3d(0.0, 1.5, 0.0))},
+      {{1.0, 2.0}});
+  ASSERT_TRUE(track);
+  const auto source = GyroMotionSource::Create(Camera::Pinhole(640, 360, 500.0), 0.020, *track);
+  ASSERT_TRUE(source);
+  // To the right: what lies ahead then lies to the left of the camera.
+  const auto turn = source->TurnBetween(0.2, 0.8);
+  ASSERT_TRUE(turn);
+  EXPECT_NEAR(LogSo3(*turn).y(), -0.3, 1e-9);
+  EXPECT_TRUE(source->TurnBetween(2.1, 2.9));
+  EXPECT_FALSE(source->TurnBetween(0.8, 2.2));
+  EXPECT_FALSE(source->TurnBetween(2.8, 3.2));
+}
+
 TEST(GyroMotionSource, NamesTheFrameItCannotTell) {
   GyroMotionSource source =
       *GyroMotionSource::Create(Camera::Pinhole(640, 360, 500.0), 0.020, YawRight());

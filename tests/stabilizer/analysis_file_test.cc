@@ -5,10 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <limits>
+#include <span>
 #include <string_view>
 
 #include "stabilizer/analysis_format_detail.h"
@@ -32,6 +35,7 @@ FrameAnalysis SomeFrame(int i) {
     frame.mesh_update.At(3, 4) = {1.5F, -2.25F};
     frame.rs_field = MotionField(640, 360, 9, 33);
     frame.rs_field.At(8, 32) = {-12.5F, 0.125F};
+    frame.orientation = {Eigen::Quaterniond(0.5, -0.5, 0.5, 0.5), static_cast<std::uint32_t>(i)};
   }
   return frame;
 }
@@ -104,6 +108,12 @@ TEST(AnalysisFile, RoundTrip) {
       EXPECT_NEAR((*frame)->rs_field.At(8, 32).x(), -12.5F, 1e-3F);
       EXPECT_EQ((*frame)->rs_field.reference_row(), 179.5);
     }
+    ASSERT_EQ((*frame)->orientation.has_value(), i % 2 == 1);
+    if (expected.orientation) {
+      EXPECT_EQ((*frame)->orientation->camera_from_world.coeffs(),
+                expected.orientation->camera_from_world.coeffs());
+      EXPECT_EQ((*frame)->orientation->world, expected.orientation->world);
+    }
   }
   const auto end = (*reader)->Next();
   ASSERT_TRUE(end);
@@ -154,7 +164,8 @@ TEST(AnalysisFile, BytesLieWhereTheFormatSays) {
   constexpr std::size_t kMesh = 12 + 4 * 17 * 17;
   constexpr std::size_t kRsField = 12 + 4 * 9 * 33;
   constexpr std::size_t kEvenBody = kFixedPart + 2 * kNoField;
-  constexpr std::size_t kOddBody = kFixedPart + kMesh + kRsField;
+  constexpr std::size_t kOrientation = 4 + 4 + 4 * 8;
+  constexpr std::size_t kOddBody = kFixedPart + kMesh + kRsField + kOrientation;
   ASSERT_GT(bytes.size(), kHeader + kFooter);
   EXPECT_EQ(bytes.substr(0, kHeader), std::string("RSSTABAN\1\0\0\0", kHeader));
 
@@ -183,6 +194,12 @@ TEST(AnalysisFile, BytesLieWhereTheFormatSays) {
   const std::size_t rs_field = mesh + kMesh;
   EXPECT_EQ(NumberAt<std::uint16_t>(bytes, rs_field), 9);
   EXPECT_EQ(NumberAt<std::uint16_t>(bytes, rs_field + 2), 33);
+  const std::size_t orientation = rs_field + kRsField;
+  EXPECT_EQ(NumberAt<std::uint16_t>(bytes, orientation), 1);
+  EXPECT_EQ(NumberAt<std::uint16_t>(bytes, orientation + 2), 36);
+  EXPECT_EQ(NumberAt<std::uint32_t>(bytes, orientation + 4), 1);
+  const std::array<double, 4> xyzw = {-0.5, 0.5, 0.5, 0.5};
+  EXPECT_EQ((NumberAt<std::array<double, 4>>(bytes, orientation + 8)), xyzw);
 
   const std::size_t summary = kHeader + kFrames * kPrefix + 3 * kEvenBody + 2 * kOddBody;
   const std::size_t footer = bytes.size() - kFooter;
@@ -199,6 +216,72 @@ TEST(AnalysisFile, BytesLieWhereTheFormatSays) {
         "smallest_crop_ratio", "fixed_zoom", "smallest_kept_ratio", "mean_kept_ratio", "rs_source",
         "rs_reason", "readout_s", "gyro_offset_s", "camera", "options"}) {
     EXPECT_NE(bytes.find('"' + std::string(key) + '"', summary), std::string::npos) << key;
+  }
+}
+
+// The optional part of an odd frame, as it is written.
+ByteSink OrientationPart() {
+  ByteSink sink;
+  detail::PutOptionalParts(sink, SomeFrame(1));
+  return sink;
+}
+
+bool IsRead(const ByteSink& sink, FrameAnalysis& frame) {
+  frame = {};
+  ByteSource source(sink.bytes());
+  return detail::GetOptionalParts(source, frame) && source.remaining() == 0;
+}
+
+TEST(AnalysisFileParts, RecordsWithoutAnyAreOldOnesAndFine) {
+  ByteSink none;
+  detail::PutOptionalParts(none, SomeFrame(0));
+  EXPECT_EQ(none.bytes().size(), 0U);
+  FrameAnalysis frame;
+  EXPECT_TRUE(IsRead(none, frame));
+  EXPECT_FALSE(frame.orientation);
+}
+
+TEST(AnalysisFileParts, OnesOfLaterProgramsAreSkipped) {
+  ByteSink sink;
+  sink.Put(std::uint16_t{77});
+  sink.Put(std::uint16_t{3});
+  sink.Put(std::array<std::uint8_t, 3>{1, 2, 3});
+  sink.Put(OrientationPart().bytes());
+  sink.Put(std::uint16_t{78});
+  sink.Put(std::uint16_t{0});
+  FrameAnalysis frame;
+  ASSERT_TRUE(IsRead(sink, frame));
+  EXPECT_EQ(frame.orientation->world, 1U);
+}
+
+TEST(AnalysisFileParts, DamageIsRefused) {
+  FrameAnalysis frame;
+  const ByteSink good = OrientationPart();
+  ASSERT_TRUE(IsRead(good, frame));
+  const std::span<const std::uint8_t> bytes = good.bytes();
+  for (std::size_t size = 1; size < bytes.size(); ++size) {
+    ByteSink cut;
+    cut.Put(bytes.first(size));
+    EXPECT_FALSE(IsRead(cut, frame)) << size;
+  }
+  ByteSink twice;
+  twice.Put(bytes);
+  twice.Put(bytes);
+  EXPECT_FALSE(IsRead(twice, frame));
+  // Another length, and quaternions that are no rotation.
+  constexpr std::size_t kSizeField = 2;
+  constexpr std::size_t kQuaternion = 8;
+  std::vector<std::uint8_t> changed(bytes.begin(), bytes.end());
+  changed[kSizeField] -= 1;
+  ByteSink shorter;
+  shorter.Put(std::span<const std::uint8_t>(changed));
+  EXPECT_FALSE(IsRead(shorter, frame));
+  for (const double bad : {0.0, 0.6, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    changed.assign(bytes.begin(), bytes.end());
+    std::memcpy(changed.data() + kQuaternion, &bad, sizeof bad);
+    ByteSink sink;
+    sink.Put(std::span<const std::uint8_t>(changed));
+    EXPECT_FALSE(IsRead(sink, frame)) << bad;
   }
 }
 

@@ -180,6 +180,40 @@ TEST(MotionStage, FollowsTheSensorWhereThereAreNoTracks) {
   EXPECT_LT(largest_out * kWidth, 0.5);
 }
 
+// Frames of one world may be compared, and turn against each other as the source says: to the other
+// side would be a turn of twice the shake.
+TEST(MotionStage, NotesWhereTheCameraLooked) {
+  class Interrupted final : public RsMotionSource {
+   public:
+    std::string Name() const override { return "gyro"; }
+    bool NeedsImage() const override { return false; }
+    Result<RsMotion> EstimateMotion(const FrameContext&) override { return RsMotion(); }
+    std::optional<Eigen::Quaterniond> CameraFromWorld(double time_s) const override {
+      return std::abs(time_s - 0.5) < 0.01 ? std::nullopt : head.CameraFromWorld(time_s);
+    }
+    std::optional<Eigen::Quaterniond> TurnBetween(double from_s, double to_s) const override {
+      const bool over_the_gap = from_s < 1.0 && to_s >= 1.0;
+      return over_the_gap ? std::nullopt : RsMotionSource::TurnBetween(from_s, to_s);
+    }
+    ShakingHead head;
+  };
+  RsSelection selection;
+  selection.source = std::make_unique<Interrupted>();
+  const auto frames = Analyze(selection, [](int) { return PointTracks(); });
+  const ShakingHead head;
+  for (std::size_t n = 0; n < frames.size(); ++n) {
+    ASSERT_EQ(frames[n].orientation.has_value(), n != 15) << n;
+    if (n == 15) {
+      continue;
+    }
+    EXPECT_EQ(frames[n].orientation->world, n < 15 ? 0U : n < 30 ? 1U : 2U) << n;
+    const auto truth = head.CameraFromWorld(static_cast<double>(n) / 30.0);
+    EXPECT_LT(frames[n].orientation->camera_from_world.angularDistance(*truth), 1e-12) << n;
+  }
+  RsSelection unknown;
+  EXPECT_FALSE(Analyze(unknown, [](int) { return PointTracks(); }).front().orientation);
+}
+
 // The same source, but it answers for a frame only when it has been shown `kDelay` more.
 class LateSkewSource final : public RsMotionSource {
  public:
