@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/pages/clip_charts.h"
 
+#include <cmath>
 #include <functional>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -46,6 +48,27 @@ ChartSeries MomentSeries(const std::vector<RsMoment>& moments, double RsMoment::
   return series;
 }
 
+// How far a value would be off if the readout time were by one standard deviation: as a share of
+// it, 0 where it is exact or there is none.
+double ReadoutUncertainty(const stabilizer::ClipAnalysis& analysis) {
+  return analysis.readout_s != 0.0 ? analysis.readout_sigma_s / std::abs(analysis.readout_s) : 0.0;
+}
+
+std::optional<report::ChartBand> BandAround(const ChartSeries& series, double share) {
+  if (!(share > 0.0)) {
+    return std::nullopt;
+  }
+  report::ChartBand band;
+  band.name = "\u00b1 one standard deviation of the readout time";
+  for (const Eigen::Vector2d& point : series.points) {
+    const double reach = share * std::abs(point.y());
+    band.x.push_back(point.x());
+    band.low.push_back(point.y() - reach);
+    band.high.push_back(point.y() + reach);
+  }
+  return band;
+}
+
 }  // namespace
 
 std::vector<LineChart> PathCharts(const CompareReport& report) {
@@ -72,26 +95,33 @@ std::vector<LineChart> PathCharts(const CompareReport& report) {
   return charts;
 }
 
-std::vector<LineChart> RsCharts(const std::vector<RsMoment>& moments) {
+std::vector<LineChart> RsCharts(const std::vector<RsMoment>& moments,
+                                const stabilizer::ClipAnalysis& analysis) {
+  const double uncertainty = ReadoutUncertainty(analysis);
   std::vector<LineChart> charts;
   const auto add = [&](const char* title, const char* unit, const char* description,
-                       ChartSeries series, bool include_zero) {
-    LineChart chart = Chart(title, unit, description);
-    chart.series = {ChartSeries{}, std::move(series)};  // in the colour of what was done
-    chart.include_zero = include_zero;
-    charts.push_back(std::move(chart));
+                       ChartSeries series) -> LineChart& {
+    charts.push_back(Chart(title, unit, description));
+    charts.back().series = {ChartSeries{}, std::move(series)};  // in the colour of what was done
+    return charts.back();
   };
-  add("Skew", "px, last row further right",
-      "How much further right the last row of each frame was recorded than the first.",
-      MomentSeries(moments, &RsMoment::sideways_px), true);
-  add("Stretch", "px, last row further down",
-      "How much further down the last row of each frame was recorded than the first.",
-      MomentSeries(moments, &RsMoment::upright_px), true);
-  add("Twist", "degrees clockwise",
-      "How far the last row of each frame is turned against the first.",
-      MomentSeries(moments, &RsMoment::turn_deg), true);
+  const auto add_motion = [&](const char* title, const char* unit, const char* description,
+                              double RsMoment::*value) {
+    LineChart& chart = add(title, unit, description, MomentSeries(moments, value));
+    chart.band = BandAround(chart.series.back(), uncertainty);
+    chart.include_zero = true;
+  };
+  add_motion("Skew", "px, last row further right",
+             "How much further right the last row of each frame was recorded than the first.",
+             &RsMoment::sideways_px);
+  add_motion("Stretch", "px, last row further down",
+             "How much further down the last row of each frame was recorded than the first.",
+             &RsMoment::upright_px);
+  add_motion("Twist", "degrees clockwise",
+             "How far the last row of each frame is turned against the first.",
+             &RsMoment::turn_deg);
   add("Kept of each side", "%", "How much of the picture's width and height is shown.",
-      MomentSeries(moments, &RsMoment::kept_ratio, kPercent), false);
+      MomentSeries(moments, &RsMoment::kept_ratio, kPercent));
   return charts;
 }
 

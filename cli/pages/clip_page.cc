@@ -114,10 +114,10 @@ Status AddRollingShutter(const ClipPage& page, HtmlPage& html) {
       {"Found by",
        analysis.rs_source + (analysis.rs_reason.empty() ? "" : ": ") + analysis.rs_reason}};
   if (analysis.readout_s != 0.0) {
-    facts.push_back({"Readout", ReadoutText(analysis.readout_s)});
+    facts.push_back({"Readout", ReadoutText(analysis.readout_s, analysis.readout_sigma_s)});
   }
   html.Add(facts);
-  html.Add(RsCharts(page.moments));
+  html.Add(RsCharts(page.moments, analysis));
 
   double longest = 0.0;
   for (const Exhibit& exhibit : page.exhibits) {

@@ -27,9 +27,11 @@ const char* LensName(LensModel model) {
 
 }  // namespace
 
-std::string ReadoutText(double readout_s) {
+std::string ReadoutText(double readout_s, double sigma_s) {
   constexpr double kMilliseconds = 1000.0;
-  return fmt::format("{:.1f} ms, {}", std::abs(readout_s) * kMilliseconds,
+  const std::string sigma =
+      sigma_s > 0.0 ? fmt::format(" \u00b1 {:.1f}", kMilliseconds * sigma_s) : "";
+  return fmt::format("{:.1f}{} ms, {}", std::abs(readout_s) * kMilliseconds, sigma,
                      readout_s < 0.0 ? "last row first" : "first row to last");
 }
 

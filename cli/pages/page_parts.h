@@ -15,8 +15,9 @@
 // What the reports of several commands have in common.
 namespace rsstab::cli {
 
-// "25.0 ms, first row to last"
-[[nodiscard]] std::string ReadoutText(double readout_s);
+// "25.0 ms, first row to last"; with "+- 0.4" (as one sign) behind the number where it is not
+// exact.
+[[nodiscard]] std::string ReadoutText(double readout_s, double sigma_s = 0.0);
 
 // "pinhole, focal length 1109 px at 1280 x 720"
 [[nodiscard]] std::string CameraText(const Camera& camera);

@@ -94,6 +94,60 @@ TEST(MakeClipPage, EscapesNames) {
   EXPECT_THAT(*html, HasSubstr("&lt;script&gt;alert(1)&lt;/script&gt;.mp4"));
 }
 
+std::vector<RsMoment> Moments() {
+  std::vector<RsMoment> moments;
+  for (const double skew : {4.0, -8.0, 0.0}) {
+    RsMoment moment;
+    moment.time_s = static_cast<double>(moments.size());
+    moment.sideways_px = skew;
+    moments.push_back(moment);
+  }
+  return moments;
+}
+
+// A readout that is longer by a tenth makes every motion within a frame longer by a tenth.
+TEST(RsCharts, BandIsAsWideAsTheReadoutIsUncertain) {
+  stabilizer::ClipAnalysis analysis;
+  analysis.readout_s = -0.02;  // last row first
+  analysis.readout_sigma_s = 0.002;
+  const auto charts = RsCharts(Moments(), analysis);
+  ASSERT_EQ(charts.size(), 4U);
+  const auto& band = charts[0].band;
+  ASSERT_TRUE(band);
+  EXPECT_THAT(band->x, ::testing::ElementsAre(0.0, 1.0, 2.0));
+  using ::testing::DoubleNear;
+  constexpr double kExact = 1e-12;
+  EXPECT_THAT(band->low, ::testing::ElementsAre(DoubleNear(3.6, kExact), DoubleNear(-8.8, kExact),
+                                                DoubleNear(0.0, kExact)));
+  EXPECT_THAT(band->high, ::testing::ElementsAre(DoubleNear(4.4, kExact), DoubleNear(-7.2, kExact),
+                                                 DoubleNear(0.0, kExact)));
+  EXPECT_TRUE(charts[1].band && charts[2].band);
+  EXPECT_FALSE(charts[3].band);  // what is kept does not follow from it
+}
+
+TEST(RsCharts, AReadoutThatIsGivenHasNoBand) {
+  stabilizer::ClipAnalysis analysis;
+  analysis.readout_s = 0.02;
+  EXPECT_FALSE(RsCharts(Moments(), analysis)[0].band);
+  // Of single images there is no readout time to be uncertain of.
+  analysis.readout_s = 0.0;
+  analysis.readout_sigma_s = 0.002;
+  EXPECT_FALSE(RsCharts(Moments(), analysis)[0].band);
+}
+
+TEST(MakeClipPage, StatesTheReadoutWithItsUncertainty) {
+  ClipPage page = Page();
+  page.moments = Moments();
+  page.analysis.emplace();
+  page.analysis->readout_s = 0.0173;
+  page.analysis->readout_sigma_s = 0.0007;
+  const auto html = MakeClipPage(page);
+  ASSERT_TRUE(html);
+  EXPECT_THAT(*html, HasSubstr("17.3 \u00b1 0.7 ms, first row to last"));
+  EXPECT_THAT(*html, HasSubstr("\u00b1 one standard deviation of the readout time"));
+  EXPECT_THAT(*html, HasSubstr("class=\"band\""));
+}
+
 TEST(PathCharts, AreInSecondsPixelsDegreesAndPercent) {
   const auto charts = PathCharts(Page().figures);
   ASSERT_EQ(charts.size(), 4U);
