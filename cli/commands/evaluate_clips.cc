@@ -15,6 +15,8 @@ namespace rsstab::cli {
 namespace {
 
 constexpr double kMilli = 1e3;
+// Clips of a kind whose pictures are kept: they are what makes a page large.
+constexpr int kMostShown = 4;
 
 // The other messages of a run, of which there are many, would only hide what is told here.
 Logger WarningsOnly(const Logger& logger) {
@@ -52,6 +54,35 @@ void NoteCodec(const CodecCost& cost, ClipRun& run, ClipRecord& clip) {
   }
 }
 
+// How far the rotations that the methods found are from the true ones, or, where nobody knows
+// those, from what the first method that read a gyro log took from it.
+Status ScorePaths(const igf::SimulationTruth* truth, ClipRecord& clip) {
+  const ClipRun* log = nullptr;
+  evaluation::OrientationPath reference;
+  if (truth != nullptr) {
+    reference = evaluation::TruePath(*truth);
+  } else {
+    const auto with_log = std::find_if(clip.runs.begin(), clip.runs.end(),
+                                       [](const ClipRun& run) { return run.rs_source == "gyro"; });
+    if (with_log == clip.runs.end()) {
+      return {};
+    }
+    log = &*with_log;
+    reference = log->path;
+  }
+  for (ClipRun& run : clip.runs) {
+    if (!run.field || &run == log) {
+      continue;
+    }
+    auto score = evaluation::ScorePathAngle(run.path, reference, 1.0 / run.clip.frames_per_second);
+    if (!score) {
+      return Propagate(score.error(), clip.name + ", " + run.method);
+    }
+    run.angle = *score;
+  }
+  return {};
+}
+
 class Evaluation {
  public:
   Evaluation(const EvaluateOptions& options, std::vector<ClipMethod> methods, std::size_t clips,
@@ -61,7 +92,8 @@ class Evaluation {
         logger_(logger),
         quiet_(WarningsOnly(logger)),
         progress_(progress),
-        clips_(clips) {
+        clips_(clips),
+        with_pictures_(!options.report.empty()) {
     for (const ClipMethod& method : methods_) {
       report_.methods.push_back(method.name);
     }
@@ -96,8 +128,11 @@ class Evaluation {
     if (Status status = TimeCodec(clip, folder, codec); !status) {
       return status;
     }
+    if (Status status = BeginShowcase(clip, *truth ? &**truth : nullptr, record); !status) {
+      return status;
+    }
     for (const ClipMethod& method : methods_) {
-      auto run = Run(method, clip, *truth ? &**truth : nullptr, folder);
+      auto run = Run(method, clip, *truth ? &**truth : nullptr, folder, record.showcase);
       if (run) {
         if (codec) {
           NoteCodec(*codec, *run, record);
@@ -111,6 +146,9 @@ class Evaluation {
       if (Status status = AdvanceTo(runs_done_ + 1); !status) {
         return status;
       }
+    }
+    if (Status status = ScorePaths(*truth ? &**truth : nullptr, record); !status) {
+      return status;
     }
     report_.clips.push_back(std::move(record));
     return {};
@@ -152,26 +190,69 @@ class Evaluation {
     return {};
   }
 
+  static Result<CompareReport> Measure(const EvaluationClip& clip, const std::string& result,
+                                       bool is_input) {
+    CompareOptions compare;
+    compare.input = clip.video.string();
+    compare.output = result;
+    compare.truth = clip.folder.string();
+    return CompareClips(
+        compare, SilentLogger(), [](std::int64_t, std::int64_t) { return !CancelRequested(); },
+        is_input ? CompareScope::kInputOnly : CompareScope::kOutputOnly);
+  }
+
+  // The clip as it is tells which of its frames are shown.
+  Result<ClipShowcase> OpenShowcase(const EvaluationClip& clip, const igf::SimulationTruth* truth) {
+    auto input = Measure(clip, "", true);
+    if (!input) {
+      return Propagate(input.error());
+    }
+    input_ = std::move(*input);
+    return truth != nullptr ? ClipShowcase::Create(input_->input, (clip.folder / "gs.mp4").string(),
+                                                   truth->camera)
+                            : ClipShowcase::Create(input_->input, "", std::nullopt);
+  }
+
+  Status BeginShowcase(const EvaluationClip& clip, const igf::SimulationTruth* truth,
+                       ClipRecord& record) {
+    input_.reset();
+    int& shown = truth != nullptr ? simulated_shown_ : real_shown_;
+    if (!with_pictures_ || clip.kind == ClipKind::kTwin || shown == kMostShown) {
+      return {};
+    }
+    auto showcase = OpenShowcase(clip, truth);
+    if (showcase) {
+      record.showcase = std::move(*showcase);
+      ++shown;
+    } else if (showcase.error().code == ErrorCode::kCancelled) {
+      return Propagate(showcase.error());
+    } else {
+      LeaveOut(clip.name + ", pictures", showcase.error());
+    }
+    return {};
+  }
+
   Result<ClipRun> Run(const ClipMethod& method, const EvaluationClip& clip,
-                      const igf::SimulationTruth* truth, const std::string& folder) {
+                      const igf::SimulationTruth* truth, const std::string& folder,
+                      std::optional<ClipShowcase>& showcase) {
     const auto steady = RunClipMethod(method, clip, truth, encoding_, folder, quiet_);
     if (!steady) {
       return Propagate(steady.error());
     }
-    CompareOptions compare;
-    compare.input = clip.video.string();
-    compare.output = steady->clip;
-    compare.truth = clip.folder.string();
     const bool is_input = method.tool == ClipTool::kNone;
-    auto measured = CompareClips(
-        compare, SilentLogger(), [](std::int64_t, std::int64_t) { return !CancelRequested(); },
-        is_input ? CompareScope::kInputOnly : CompareScope::kOutputOnly);
+    const auto measured =
+        is_input && input_ ? Result<CompareReport>(*input_) : Measure(clip, steady->clip, is_input);
     if (!measured) {
       return Propagate(measured.error());
     }
     ClipRun run;
     run.method = method.name;
     run.clip = is_input ? measured->input : measured->output;
+    if (showcase) {
+      if (Status status = showcase->Add(method.name, steady->clip, run.clip); !status) {
+        return Propagate(status.error());
+      }
+    }
     if (is_input) {
       return run;
     }
@@ -195,6 +276,11 @@ class Evaluation {
       return Propagate(field.error());
     }
     run.field = *field;
+    auto path = evaluation::ReadOrientationPath(steady->analysis_file);
+    if (!path) {
+      return Propagate(path.error());
+    }
+    run.path = std::move(*path);
     return run;
   }
 
@@ -204,6 +290,10 @@ class Evaluation {
   Logger quiet_;
   const evaluation::EvaluationProgress& progress_;
   std::size_t clips_;
+  bool with_pictures_;
+  std::optional<CompareReport> input_;  // of the clip at hand, where its pictures are kept
+  int real_shown_ = 0;
+  int simulated_shown_ = 0;
   std::size_t runs_done_ = 0;
   ClipsReport report_;
 };

@@ -11,8 +11,10 @@
 #include "cli/commands/compare.h"
 #include "cli/commands/evaluate_options.h"
 #include "cli/commands/evaluation_header.h"
+#include "cli/pages/clip_showcase.h"
 #include "cli/report/html_page.h"
 #include "evaluation/for_each_item.h"
+#include "evaluation/path_angle_score.h"
 #include "evaluation/rs_field_score.h"
 #include "igf/base/log.h"
 #include "igf/base/result.h"
@@ -29,6 +31,10 @@ struct ClipRun {
   std::string rs_source;  // as the analysis file has it, and why
   std::string rs_reason;
   std::optional<double> readout_s;  // where a source is used that has one
+  // Where the camera looked as the method found it, and how far that is from the truth: of a real
+  // clip from what its gyro log says, where a method takes the rotation from there.
+  evaluation::OrientationPath path;
+  std::optional<evaluation::PathAngleScore> angle;
   // Wall time a frame, decoding and encoding included; empty for the method input.
   std::optional<double> analysis_ms;  // also empty for a tool of one pass
   std::optional<double> render_ms;
@@ -43,7 +49,8 @@ struct ClipRecord {
   // Wall time a frame of decoding alone, and of decoding and encoding.
   std::optional<double> decode_ms;
   std::optional<double> recode_ms;
-  std::vector<ClipRun> runs;  // in the order of the methods; failed ones are missing
+  std::vector<ClipRun> runs;             // in the order of the methods; failed ones are missing
+  std::optional<ClipShowcase> showcase;  // for a page, of the first clips that are no twins
 };
 
 struct ClipsReport {
@@ -64,7 +71,8 @@ struct ClipsReport {
 
 // Lets every method steady every clip of the folder options.clips, one after the other, and
 // measures what comes out. Clips that cannot be used, methods that cannot run here and runs that
-// fail are named in the header, with a warning, and left out. `progress` counts runs.
+// fail are named in the header, with a warning, and left out. `progress` counts runs. Pictures are
+// kept only where options.report asks for a page.
 // Errors: those of FindClips and ParseClipMethods; that of the last thing left out when
 // there is no run to report; kCancelled.
 [[nodiscard]] Result<ClipsReport> EvaluateClips(

@@ -93,6 +93,29 @@ std::vector<report::LineChart> ClipPaths(const ClipRecord& clip) {
   return charts;
 }
 
+Status AddShowcases(const ClipsReport& report, HtmlPage& html) {
+  bool has_section = false;
+  for (const ClipRecord& clip : report.clips) {
+    if (!clip.showcase || clip.showcase->pictures().empty()) {
+      continue;
+    }
+    if (!has_section) {
+      html.BeginSection(
+          "Pictures",
+          "One frame of a clip as each method left it. Where the truth is known, below: each minus "
+          "what a global shutter would have seen, turned and zoomed to its view, and its camera "
+          "residual; darker is closer to the truth, grey cannot be compared.");
+      has_section = true;
+    }
+    html.AddHeading(fmt::format("{}, frame {}", clip.name, clip.showcase->frame().index),
+                    "Chosen because " + clip.showcase->frame().reason + ".");
+    if (Status status = clip.showcase->Show(html); !status) {
+      return status;
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<std::string> MakeEvaluationPage(const SyntheticReport& report,
@@ -122,6 +145,9 @@ Result<std::string> MakeEvaluationPage(const ClipsReport& report,
                 fmt::format("{} clips, {} methods", report.clips.size(), report.methods.size()));
   html.BeginSection("Figures", "px at 640 px width; ms a frame with whatever else was running.");
   AddTables(FigureTables(report), html);
+  if (Status status = AddShowcases(report, html); !status) {
+    return Propagate(status.error());
+  }
   html.BeginSection("Paths",
                     "How the picture's content moved since the first frame; px at 640 px width.");
   for (const ClipRecord& clip : report.clips) {

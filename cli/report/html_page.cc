@@ -140,6 +140,8 @@ void HtmlPage::Add(std::span<const Panel> panels) { AddPanels(panels, "panels");
 
 void HtmlPage::AddPairs(std::span<const Panel> panels) { AddPanels(panels, "panels pairs"); }
 
+void HtmlPage::AddGallery(std::span<const Panel> panels) { AddPanels(panels, "panels gallery"); }
+
 void HtmlPage::AddPanels(std::span<const Panel> panels, std::string_view css_class) {
   body_ += fmt::format("<div class=\"{}\">\n", css_class);
   for (const Panel& panel : panels) {

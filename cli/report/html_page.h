@@ -90,6 +90,8 @@ class HtmlPage {
   void Add(std::span<const Panel> panels);
   // The same, two and two beside each other, also on a phone.
   void AddPairs(std::span<const Panel> panels);
+  // The same, several beside each other, two on a phone; all of one size.
+  void AddGallery(std::span<const Panel> panels);
   void Add(std::span<const ColorKey> keys);
   void Add(std::span<const Share> shares);
   // A smaller heading within the section.

@@ -68,6 +68,8 @@ pointer-events:none}
 .panels{display:grid;grid-template-columns:repeat(auto-fit,minmax(150px,1fr));
 gap:18px 20px;margin-top:22px}
 .pairs{grid-template-columns:repeat(2,minmax(0,1fr))}
+.gallery{grid-template-columns:repeat(4,minmax(0,1fr));gap:14px 16px}
+@media(max-width:640px){.gallery{grid-template-columns:repeat(2,minmax(0,1fr));gap:12px 10px}}
 .panels img{box-shadow:0 0 0 1px var(--grid);display:block;width:100%;height:auto;border-radius:3px}
 .keys{display:flex;flex-wrap:wrap;gap:14px 40px;align-items:center;margin-top:14px;font-size:13px;
 color:var(--faint)}

@@ -59,7 +59,10 @@ class ReportPage(unittest.TestCase):
         run(clip, "-o", "steady.mp4", "--rs", "gyro", "--gyro", "clip/gyro.csv",
             "--camera", "clip/camera.json", "--report", "steady.html")
         run("compare", clip, "steady.mp4", "--truth", "clip", "--report", "compare.html")
-        cls.pages = [root / "steady.html", root / "compare.html"]
+        run("evaluate", "--clips", "clip", "--methods", "input,off,gyro,fused",
+            "--report", "evaluate.html")
+        cls.clip_pages = [root / "steady.html", root / "compare.html"]
+        cls.pages = [*cls.clip_pages, root / "evaluate.html"]
         cls.browser = open_browser()
 
     @classmethod
@@ -128,6 +131,23 @@ class ReportPage(unittest.TestCase):
         stage.find_element("css selector", "input").send_keys(Keys.ARROW_LEFT * 4)
         self.assertAlmostEqual(shown(), before - 2.0, delta=0.1)
 
+    def test_methods_stand_beside_the_truth(self):
+        self.show(self.pages[2], DESKTOP, "light")
+        galleries = self.script("[...document.querySelectorAll('.gallery')].map("
+                                "g => [...g.querySelectorAll('figcaption b')]"
+                                ".map(b => b.textContent))")
+        methods = ["input", "off", "gyro", "fused"]
+        self.assertEqual(galleries, [methods + ["truth"], methods])
+        # How bright the maps are: the closer to the truth, the darker.
+        level = lambda n: self.script(
+            "(i => { const c = document.createElement('canvas');"
+            " c.width = i.naturalWidth; c.height = i.naturalHeight;"
+            " const g = c.getContext('2d'); g.drawImage(i, 0, 0);"
+            " const d = g.getImageData(0, 0, c.width, c.height).data;"
+            " return d.reduce((sum, v) => sum + v, 0) / d.length; })"
+            f"(document.querySelectorAll('.gallery')[1].querySelectorAll('img')[{n}])")
+        self.assertLess(level(methods.index("gyro")), level(methods.index("input")))
+
     def test_nothing_is_fetched(self):
         for page in self.pages:
             self.browser.get_log("performance")
@@ -145,7 +165,7 @@ class ReportPage(unittest.TestCase):
             self.assertIn("default-src 'none'", text)
 
     def test_names_stay_text(self):
-        for page in self.pages:
+        for page in self.clip_pages:
             self.show(page, DESKTOP, "light")
             heading = self.script("document.querySelector('h1').textContent")
             self.assertEqual(heading, "<script>document.title='owned'<img src=x>.mp4")

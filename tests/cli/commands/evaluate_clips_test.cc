@@ -92,6 +92,14 @@ TEST_F(EvaluateClipsTest, TruthTellsTheMethodsApart) {
   EXPECT_GT(gyro.field->applied_px, 0.7);
   EXPECT_NEAR(gyro.readout_s.value(), kReadoutS, 1e-9);
   EXPECT_EQ(gyro.rs_source, "gyro");
+  // The rotation is read from the log.
+  EXPECT_EQ(gyro.angle->known_share, 1.0);
+  EXPECT_GT(gyro.angle->uncorrected_rate_deg_s.value(), 5.0);
+  EXPECT_LT(gyro.angle->angle_deg.value(), 0.02 * gyro.angle->uncorrected_angle_deg.value());
+  EXPECT_LT(gyro.angle->rate_deg_s.value(), 0.02 * *gyro.angle->uncorrected_rate_deg_s);
+  EXPECT_FALSE(input.angle);
+  EXPECT_FALSE(off.angle->angle_deg);
+  EXPECT_EQ(off.angle->uncorrected_rate_deg_s, gyro.angle->uncorrected_rate_deg_s);
   // Nothing is corrected, so all of it is left.
   EXPECT_EQ(off.field->applied_px, 0.0);
   EXPECT_DOUBLE_EQ(off.field->epe_px.value(), off.field->uncorrected_epe_px.value());
@@ -152,12 +160,16 @@ TEST_F(EvaluateClipsTest, ReportsHoldEveryFigure) {
                              "bend_px",
                              "rs_epe_px",
                              "rs_epe_uncorrected_px",
+                             "path_angle_uncorrected_deg",
+                             "path_rate_uncorrected_deg_s",
+                             "path_known_percent",
                              "analysis_ms",
                              "render_ms",
                              "total_ms",
                              "own_ms"}) {
     EXPECT_TRUE(off[figure].is_number()) << figure;
   }
+  EXPECT_TRUE(off["path_angle_deg"].is_null());
   EXPECT_TRUE(off["readout_ms"].is_null());  // no source, so none was found
   EXPECT_EQ(off["rs_source"], "none");
   EXPECT_EQ(off["frames"], kFrames);
