@@ -18,12 +18,16 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 using stabilizer::FrameOrientation;
 
-// Root mean square of vectors.
-class SquareSum {
+// Mean and root mean square of vectors.
+class VectorSums {
  public:
   void Add(const Eigen::Vector3d& v) {
+    sum_ += v;
     squares_ += v.cwiseAbs2();
     ++count_;
+  }
+  [[nodiscard]] std::optional<Eigen::Vector3d> Mean() const {
+    return count_ > 0 ? std::optional<Eigen::Vector3d>(sum_ / count_) : std::nullopt;
   }
   [[nodiscard]] std::optional<Eigen::Vector3d> Axes() const {
     return count_ > 0 ? std::optional<Eigen::Vector3d>((squares_ / count_).cwiseSqrt())
@@ -34,6 +38,7 @@ class SquareSum {
   }
 
  private:
+  Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d squares_ = Eigen::Vector3d::Zero();
   double count_ = 0.0;
 };
@@ -52,8 +57,8 @@ Eigen::Quaterniond MeanRotation(const std::vector<Eigen::Quaterniond>& rotations
 
 struct Errors {
   std::int64_t frames = 0;
-  SquareSum angles;
-  SquareSum steps;
+  VectorSums angles;
+  VectorSums steps;
 };
 
 // Radians; steps in the axes of the later frame.
@@ -153,6 +158,7 @@ Result<PathAngleScore> ScorePathAngle(const OrientationPath& found,
   score.uncorrected_rate_deg_s = Scaled(uncorrected.steps.Length(), to_rate);
   if (const auto axes = errors.steps.Axes()) {
     score.rate_axes_deg_s = to_rate * *axes;
+    score.drift_axes_deg_s = to_rate * *errors.steps.Mean();
   }
   return score;
 }

@@ -33,6 +33,8 @@ struct PathAngleScore {
   // of drift. `rate_axes_deg_s` are its parts about the camera's axes x, y, z of the later frame.
   std::optional<double> rate_deg_s;
   std::optional<Eigen::Vector3d> rate_axes_deg_s;
+  // Mean of the same, with its sign: the part of it that is steady, as a gyro's bias is.
+  std::optional<Eigen::Vector3d> drift_axes_deg_s;
   std::optional<double> uncorrected_rate_deg_s;
 };
 

@@ -177,8 +177,9 @@ Json RunJson(const ClipRun& run) {
     json["rs_reason"] = run.rs_reason;
   }
   if (run.angle && run.angle->rate_axes_deg_s) {
-    const Eigen::Vector3d& axes = *run.angle->rate_axes_deg_s;
-    json["path_rate_axes_deg_s"] = {axes.x(), axes.y(), axes.z()};
+    const auto list = [](const Eigen::Vector3d& v) { return Json{v.x(), v.y(), v.z()}; };
+    json["path_rate_axes_deg_s"] = list(*run.angle->rate_axes_deg_s);
+    json["path_drift_axes_deg_s"] = list(*run.angle->drift_axes_deg_s);
   }
   return json;
 }

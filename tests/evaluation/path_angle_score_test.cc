@@ -101,6 +101,8 @@ TEST(PathAngleScore, KnownErrorsComeOutAsTheyAre) {
   const double rate = 2.0 * kError * kDegrees / kIntervalS;
   EXPECT_NEAR(*jumpy.rate_deg_s, rate, 1e-3 * rate);
   EXPECT_NEAR(jumpy.rate_axes_deg_s->x(), rate, 1e-3 * rate);
+  // As often there as back, but for the last step.
+  EXPECT_LT(jumpy.drift_axes_deg_s->norm(), 1.1 * rate / (kFrames - 1));
   EXPECT_NEAR(jumpy.rate_axes_deg_s->z(), 0.0, 0.02 * rate);  // the walk rolls a little
 }
 
@@ -112,6 +114,8 @@ TEST(PathAngleScore, DriftCountsInTheAngleAndHardlyInTheRate) {
                         int n) { return q * Turn(0, kDriftDegS / kDegrees * n * kIntervalS, 0); }),
       truth);
   EXPECT_NEAR(*score.rate_deg_s, kDriftDegS, 1e-3);
+  EXPECT_NEAR(score.drift_axes_deg_s->norm(), kDriftDegS, 0.02 * kDriftDegS);  // the walk leans
+  EXPECT_GT(score.drift_axes_deg_s->y(), 0.9 * kDriftDegS);
   // Evenly spread over its range.
   const double range = kDriftDegS * kFrames * kIntervalS;
   EXPECT_NEAR(*score.angle_deg, range / std::sqrt(12.0), 1e-2 * range);
