@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -80,6 +81,23 @@ PictureGroup SummariseGroup(const std::string& title, const Group& group, std::u
 }
 
 }  // namespace
+
+std::vector<PictureMethodSummary> PictureGroup::Asked() const {
+  std::vector<PictureMethodSummary> asked;
+  std::copy_if(methods.begin(), methods.end(), std::back_inserter(asked),
+               [](const PictureMethodSummary& method) { return method.pictures > 0; });
+  return asked;
+}
+
+std::vector<std::string> PictureGroup::NotAsked() const {
+  std::vector<std::string> names;
+  for (const PictureMethodSummary& method : methods) {
+    if (method.pictures == 0) {
+      names.push_back(method.method);
+    }
+  }
+  return names;
+}
 
 std::vector<PictureGroup> SummarisePictures(std::span<const PictureRecord> records,
                                             std::uint64_t seed) {

@@ -46,6 +46,10 @@ struct PictureGroup {
   std::string title;  // "all", "split test", "strength strong"
   std::size_t pictures = 0;
   std::vector<PictureMethodSummary> methods;
+
+  // The methods that answered, and the names of those that could be asked about no picture.
+  [[nodiscard]] std::vector<PictureMethodSummary> Asked() const;
+  [[nodiscard]] std::vector<std::string> NotAsked() const;
 };
 
 // All pictures; then, where they are of several kinds, each split and each strength. All records

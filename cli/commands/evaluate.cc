@@ -104,6 +104,10 @@ Status RunEvaluate(const EvaluateOptions& options, const Logger& logger, std::os
   if (!factory) {
     return Propagate(factory.error());
   }
+  for (const std::string& method : MethodsWithoutWeights(chosen)) {
+    logger->info("evaluate: {} is left out; --{}-model names its weights", method,
+                 method.substr(0, method.find('@')));
+  }
   if (options.protocol != EvaluationProtocol::kSyntheticVal) {
     return WriteReport<PictureReport>(
         options, out, [&] { return EvaluatePictures(chosen, *factory, logger, progress); },

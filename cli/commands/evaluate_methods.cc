@@ -48,6 +48,12 @@ bool IsNetwork(const std::string& name) {
          name == kReference;
 }
 
+// What only the user can have weights of, and named none.
+bool LacksWeights(const EvaluateOptions& options, const MethodSpec& method) {
+  return (method.name == kRegression && options.regression_model.empty()) ||
+         (method.name == kReference && options.reference_model.empty());
+}
+
 // Networks of one thread, each loaded once.
 class Estimators {
  public:
@@ -205,6 +211,20 @@ std::string PictureMethodNames() {
          "rotation-spline";
 }
 
+std::vector<std::string> MethodsWithoutWeights(const EvaluateOptions& options) {
+  std::vector<std::string> names;
+  const auto wanted = ParseMethodList(options.methods);
+  if (!wanted) {
+    return names;
+  }
+  for (const MethodSpec& method : *wanted) {
+    if (LacksWeights(options, method)) {
+      names.push_back(method.text);
+    }
+  }
+  return names;
+}
+
 Result<MethodFactory> MakeMethodFactory(const EvaluateOptions& options) {
   if (options.calibration_samples > 0 &&
       options.calibration_samples < evaluation::kLeastCoverageSamples) {
@@ -219,9 +239,7 @@ Result<MethodFactory> MakeMethodFactory(const EvaluateOptions& options) {
   }
   // Pictures as they are always come first; networks without weights are not asked.
   std::erase_if(*wanted, [&](const MethodSpec& method) {
-    return method.text == kNone ||
-           (method.name == kRegression && options.regression_model.empty()) ||
-           (method.name == kReference && options.reference_model.empty());
+    return method.text == kNone || LacksWeights(options, method);
   });
   // Loading once here tells what is wrong before any photograph is decoded.
   if (auto tried = MakeMethods(options, *wanted); !tried) {

@@ -28,6 +28,9 @@ struct PictureReport {
 [[nodiscard]] std::string FormatJson(const PictureReport& report);
 [[nodiscard]] std::string FormatCsv(const PictureReport& report);
 
+// A sentence on the methods that could be asked about no picture; empty when there is none.
+[[nodiscard]] std::string NotAskedText(const PictureReport& report);
+
 // The data set that the options name. Errors: kInvalidArgument without a folder; those of the data
 // set.
 [[nodiscard]] Result<std::unique_ptr<evaluation::PictureSet>> OpenPictureSet(

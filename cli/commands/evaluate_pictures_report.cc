@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,8 +30,9 @@ std::string WithInterval(const MeanFigure& figure, int width, int interval_width
 }
 
 std::string GroupText(const PictureGroup& group) {
+  const std::vector<PictureMethodSummary> asked = group.Asked();
   std::size_t width = 12;
-  for (const PictureMethodSummary& m : group.methods) {
+  for (const PictureMethodSummary& m : asked) {
     width = std::max(width, m.method.size() + 2);
   }
   std::string text = fmt::format(
@@ -38,7 +40,7 @@ std::string GroupText(const PictureGroup& group) {
       "{:>9}{:>8}{:>8}{:>9}\n",
       group.title, group.pictures, "method", width, "n", "left", "PSNR", "", "SSIM", "EPE", "",
       "change", "", "median", "u", "v", "flicker", "valid%", "PSNR in", "ms");
-  for (const PictureMethodSummary& m : group.methods) {
+  for (const PictureMethodSummary& m : asked) {
     text += fmt::format("{:<{}}{:>6}{:>5}", m.method, width, m.pictures, m.declined) +
             WithInterval(m.psnr_db, 8, 18, 2) + Cell(m.ssim.mean, 8, 3) +
             WithInterval(m.epe_px, 8, 18, 2) + WithInterval(m.epe_change_px, 8, 18, 2) +
@@ -89,10 +91,21 @@ std::string Number(double value, int digits) {
 
 }  // namespace
 
+std::string NotAskedText(const PictureReport& report) {
+  const auto names =
+      report.groups.empty() ? std::vector<std::string>() : report.groups.front().NotAsked();
+  return names.empty() ? ""
+                       : fmt::format("Not asked, since no picture comes with what they need: {}.",
+                                     fmt::join(names, ", "));
+}
+
 std::string FormatText(const PictureReport& report) {
   std::string text = detail::HeaderText(report.header);
   for (const PictureGroup& group : report.groups) {
     text += GroupText(group);
+  }
+  if (const std::string missing = NotAskedText(report); !missing.empty()) {
+    text += "\n" + missing + "\n";
   }
   return text +
          "\nn: pictures that the method could be asked about; left: of them, left as they are "

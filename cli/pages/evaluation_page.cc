@@ -166,6 +166,9 @@ Result<std::string> MakeEvaluationPage(const PictureReport& report, const Evalua
                                    " Flicker: change of the error "
                                    "between frames of a clip.");
   AddTables(FigureTables(report), html);
+  if (const std::string missing = NotAskedText(report); !missing.empty()) {
+    html.AddText(missing);
+  }
   html.Add(ErrorCharts(report));
   if (!report.records.empty() && !report.groups.empty()) {
     const auto set = OpenPictureSet(options);

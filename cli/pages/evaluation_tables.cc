@@ -186,7 +186,7 @@ std::vector<Table> FigureTables(const PictureReport& report) {
   std::vector<Table> tables;
   for (const evaluation::PictureGroup& group : report.groups) {
     tables.push_back(MakeTable(fmt::format("{}, {} pictures", group.title, group.pictures),
-                               group.methods, PictureColumns()));
+                               group.Asked(), PictureColumns()));
   }
   return tables;
 }

@@ -21,7 +21,7 @@ std::string Image(std::string_view uri, std::string_view alt, std::string_view m
 std::string Caption(std::string_view title, std::string_view note) {
   std::string text = "<figcaption>";
   if (!title.empty()) {
-    text += fmt::format("<b>{}</b>{}", Escape(title), note.empty() ? "" : " \u2014 ");
+    text += fmt::format("<b>{}</b>{}", EscapeName(title), note.empty() ? "" : " \u2014 ");
   }
   return text + Escape(note) + "</figcaption>";
 }
@@ -96,7 +96,7 @@ void HtmlPage::Add(const Table& table) {
   for (const auto& row : table.rows) {
     body_ += "<tr>";
     for (std::size_t i = 0; i < row.size(); ++i) {
-      body_ += i == 0 ? fmt::format("<th scope=\"row\">{}</th>", Escape(row[i].text))
+      body_ += i == 0 ? fmt::format("<th scope=\"row\">{}</th>", EscapeName(row[i].text))
                       : fmt::format("<td class=\"{}{}\">{}</td>", css_class(i),
                                     row[i].best ? " best" : "", Escape(row[i].text));
     }

@@ -80,4 +80,15 @@ std::string Escape(std::string_view text) {
   return escaped;
 }
 
+std::string EscapeName(std::string_view text) {
+  std::string breakable;
+  for (const char c : Escape(text)) {
+    breakable += c;
+    if (c == '@' || c == ',') {
+      breakable += "<wbr>";
+    }
+  }
+  return breakable;
+}
+
 }  // namespace rsstab::report

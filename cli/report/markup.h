@@ -12,6 +12,10 @@ namespace rsstab::report {
 // may hold both). Tab and line feed stay.
 [[nodiscard]] std::string Escape(std::string_view text);
 
+// The same for HTML that names a thing: a long name ("diffusion@steps=1,samples=8") breaks behind
+// '@' and ',' rather than anywhere.
+[[nodiscard]] std::string EscapeName(std::string_view text);
+
 }  // namespace rsstab::report
 
 #endif  // RSSTAB_CLI_REPORT_MARKUP_H_

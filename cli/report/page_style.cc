@@ -33,7 +33,7 @@ th,td{padding:5px 14px 5px 0;text-align:left;border-bottom:1px solid var(--grid)
 vertical-align:baseline}
 thead th{color:var(--faint);font-weight:500;font-size:13px;white-space:nowrap;
 border-bottom-color:var(--faint)}
-tbody th{font-weight:400;overflow-wrap:anywhere;min-width:6.5em}
+tbody th{font-weight:400;overflow-wrap:anywhere;min-width:7.5em}
 @media(max-width:640px){table{font-size:14px}th,td{padding-right:8px}}
 .note{color:var(--faint);padding-left:8px}
 @media(max-width:640px){.note{display:none}}
@@ -46,6 +46,7 @@ gap:26px 34px;margin-top:18px}
 .charts .chart{width:100%}
 .slides{display:grid;grid-template-columns:repeat(2,minmax(0,1fr));gap:22px;margin-top:16px}
 .slides>:first-child{grid-column:1/-1}.slides>:only-child{max-width:720px}
+.slides>:first-child:nth-last-child(2){grid-column:auto}
 @media(max-width:640px){.slides{grid-template-columns:minmax(0,1fr)}}
 figure{margin:0}
 figcaption{overflow-wrap:anywhere;margin-top:6px;font-size:14px;color:var(--faint)}

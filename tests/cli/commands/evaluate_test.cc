@@ -154,6 +154,8 @@ TEST(Evaluate, PairsAreReported) {
   EXPECT_EQ(json["methods"]["gyro"]["pictures"], 0);  // there is no log
   EXPECT_TRUE(json["methods"]["diffusion@samples=2,steps=1"]["psnr_untouched"].is_number());
   EXPECT_THAT(FormatText(*report), HasSubstr("all, 1 pictures"));
+  EXPECT_THAT(FormatText(*report), Not(HasSubstr("\ngyro ")));
+  EXPECT_THAT(FormatText(*report), HasSubstr("with what they need: gyro."));
   EXPECT_THAT(FormatText(*report), Not(HasSubstr("nan")));
   EXPECT_THAT(FormatCsv(*report), HasSubstr("Fastec/seq_01,Fastec/seq_01,,,Fastec/seq_01,96,64,"));
 }

@@ -72,6 +72,18 @@ TEST(FigureTables, MarkTheBestOfEachColumn) {
   EXPECT_FALSE(table.rows[2][column].best);
 }
 
+TEST(FigureTables, LeaveOutWhatCouldNotBeAsked) {
+  PictureReport report = Report({3.0, 2.0});
+  for (PictureRecord& record : report.records) {
+    record.methods[2] = MethodFigures();
+    record.methods[2].method = "rotation-spline";
+  }
+  report.groups = evaluation::SummarisePictures(report.records, 1);
+  EXPECT_EQ(FigureTables(report).front().rows.size(), 2U);
+  EXPECT_THAT(NotAskedText(report), HasSubstr(": rotation-spline."));
+  EXPECT_EQ(NotAskedText(Report({3.0})), "");
+}
+
 TEST(ErrorCharts, AreCumulative) {
   const auto charts = ErrorCharts(Report({3.0, 1.0}));
   ASSERT_EQ(charts.size(), 1U);

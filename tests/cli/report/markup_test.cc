@@ -29,5 +29,10 @@ TEST(Escape, ReplacesWhatIsNotText) {
   EXPECT_EQ(Escape("\xE6\x9D<"), bad + bad + "&lt;");  // cut off: what follows is not swallowed
 }
 
+TEST(EscapeName, BreaksBehindSettings) {
+  EXPECT_EQ(EscapeName("a@b=1,c"), "a@<wbr>b=1,<wbr>c");
+  EXPECT_EQ(EscapeName("<@>"), "&lt;@<wbr>&gt;");
+}
+
 }  // namespace
 }  // namespace rsstab::report
