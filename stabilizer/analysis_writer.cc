@@ -2,10 +2,10 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <span>
 #include <utility>
 
+#include "igf/base/staged_file.h"
 #include "stabilizer/analysis_file.h"
 #include "stabilizer/analysis_format_detail.h"
 
@@ -28,8 +28,11 @@ double KeptRatio(const FrameAnalysis& frame, const ClipAnalysis& clip) {
 }
 
 struct AnalysisWriter::Impl {
+  Impl(std::string name, StagedFile file_to_be)
+      : path(std::move(name)), staged(std::move(file_to_be)) {}
+
   std::string path;
-  std::string partial_path;
+  StagedFile staged;
   FileHandle file;
   std::int64_t num_frames = 0;
   double smallest_crop_ratio = 1.0;
@@ -61,19 +64,15 @@ struct AnalysisWriter::Impl {
 
 AnalysisWriter::AnalysisWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
-AnalysisWriter::~AnalysisWriter() {
-  if (impl_->file) {
-    impl_->file.reset();
-    std::error_code ignored;
-    std::filesystem::remove(impl_->partial_path, ignored);
-  }
-}
+AnalysisWriter::~AnalysisWriter() = default;
 
 Result<std::unique_ptr<AnalysisWriter>> AnalysisWriter::Create(const std::string& path) {
-  auto impl = std::make_unique<Impl>();
-  impl->path = path;
-  impl->partial_path = path + ".part";
-  impl->file.reset(std::fopen(impl->partial_path.c_str(), "wb"));
+  auto staged = StagedFile::Create(path);
+  if (!staged) {
+    return Propagate(std::move(staged.error()));
+  }
+  auto impl = std::make_unique<Impl>(path, std::move(*staged));
+  impl->file.reset(std::fopen(impl->staged.current_path().c_str(), "wb"));
   if (!impl->file) {
     return Fail(ErrorCode::kIo, "cannot create the analysis file {}: {}", path, LastError());
   }
@@ -141,18 +140,11 @@ Result<ClipAnalysis> AnalysisWriter::Finish(ClipAnalysis clip) {
     return Propagate(std::move(ok.error()));
   }
   if (std::fclose(impl_->file.release()) != 0) {
-    const std::string cause = LastError();
-    std::error_code ignored;
-    std::filesystem::remove(impl_->partial_path, ignored);
-    return Fail(ErrorCode::kIo, "writing the analysis file {} failed: {}", impl_->path, cause);
+    return Fail(ErrorCode::kIo, "writing the analysis file {} failed: {}", impl_->path,
+                LastError());
   }
-  std::error_code error;
-  std::filesystem::rename(impl_->partial_path, impl_->path, error);
-  if (error) {
-    std::error_code ignored;
-    std::filesystem::remove(impl_->partial_path, ignored);
-    return Fail(ErrorCode::kIo, "cannot name the analysis file {}: {}", impl_->path,
-                error.message());
+  if (Status named = impl_->staged.Commit(true); !named) {
+    return Propagate(std::move(named.error()));
   }
   return clip;
 }

@@ -5,9 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "igf/base/result.h"
+#include "igf/base/staged_file.h"
 
 namespace rsstab::media {
 
@@ -44,14 +46,12 @@ class OutputFile {
 
  private:
   OutputFile() = default;
-  [[nodiscard]] Status Stage();
 
-  std::string path_;          // as given
-  std::string target_path_;   // symbolic links resolved
-  std::string current_path_;  // hidden file, or the target itself
+  std::string path_;                  // as given
+  std::optional<StagedFile> staged_;  // none for standard output
+  std::string current_path_;
   int descriptor_ = -1;
   bool owns_descriptor_ = true;
-  bool is_staged_ = false;  // current_path_ is a hidden file that must go or be renamed
   bool can_seek_ = false;
   bool overwrite_ = false;
   int first_error_ = 0;

@@ -4,6 +4,9 @@
 #include <filesystem>
 #include <fstream>
 #include <system_error>
+#include <utility>
+
+#include "igf/base/staged_file.h"
 
 namespace rsstab {
 
@@ -45,22 +48,17 @@ Status WriteWholeFile(const std::string& path, const std::string& content) {
 
 Status WriteWholeFile(const std::string& path,
                       const std::function<void(std::ostream& out)>& write) {
-  const std::string partial = path + ".part";
-  std::ofstream out(partial, std::ios::binary | std::ios::trunc);
+  auto staged = StagedFile::Create(path);
+  if (!staged) {
+    return Propagate(std::move(staged.error()));
+  }
+  std::ofstream out(staged->current_path(), std::ios::binary | std::ios::trunc);
   write(out);
   out.close();
-  std::error_code error;
   if (!out) {
-    fs::remove(partial, error);
     return Fail(ErrorCode::kIo, "{}: cannot be written (disk full, or no permission)", path);
   }
-  fs::rename(partial, path, error);
-  if (error) {
-    const std::string reason = error.message();
-    fs::remove(partial, error);
-    return Fail(ErrorCode::kIo, "{}: {}", path, reason);
-  }
-  return {};
+  return staged->Commit(true);
 }
 
 }  // namespace rsstab

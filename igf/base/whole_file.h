@@ -16,9 +16,8 @@ namespace rsstab {
 // kCorruptData (empty).
 [[nodiscard]] Result<std::string> ReadWholeFile(const std::string& path, std::uint64_t max_bytes);
 
-// Writes a file beside `path` and renames it when it is complete, so that no half-written file ever
-// has the final name. Replaces an existing file.
-// Errors: kIo.
+// Writes a file that appears under its name only when it is complete (StagedFile). Replaces an
+// existing file. Errors: those of StagedFile, kIo (disk full).
 [[nodiscard]] Status WriteWholeFile(const std::string& path, const std::string& content);
 
 // The same for content that is made piece by piece: `write` puts it into the stream, and what it
