@@ -62,6 +62,9 @@ struct ClipCalibration {
   std::optional<Estimate> pictures_readout_s;  // what single pictures alone say
   Estimate focal;                              // picture widths
   double jerk_weight = 0.1;
+  // The camera vibrates so fast that one frame's motion says little of the next one's. The readout
+  // then corrects this clip, but as the camera's it is neither precise nor trusted (`readout_s`).
+  bool vibrates = false;
   std::vector<ReadoutHypothesis> curve;  // in order of readout; empty when given
   std::size_t num_windows = 0;           // stretches of the clip that it is based on
   // Motion between frames that no rotation explains, median over the picture: px at 640 px width.

@@ -27,6 +27,13 @@ CalibratedValue ReadoutFromTracks(const ClipCalibration& calibration) {
   if (readout.trusted) {
     return readout;
   }
+  if (calibration.vibrates) {
+    readout.reason = fmt::format(
+        "the camera vibrates so fast that other readout times within {:.0f} ms explain the clip as "
+        "well, which hardly matters for this clip; film a few seconds of turning by hand",
+        1.96e3 * readout.sigma);
+    return readout;
+  }
   readout.reason =
       calibration.num_windows == 0
           ? "the camera's speed hardly changes anywhere in the clip, or too little can be tracked; "
