@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/cli_options.h"
+#include "cli/invocation.h"
 
 namespace rsstab::cli {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "cli/cli_options.h"
+#include "cli/invocation.h"
 
 namespace rsstab::cli {
 

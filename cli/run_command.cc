@@ -20,6 +20,7 @@
 #include "cli/commands/simulate.h"
 #include "cli/commands/stabilize.h"
 #include "cli/console_logger.h"
+#include "cli/exit_codes.h"
 #include "cli/media/av_log.h"
 
 namespace rsstab::cli {

@@ -2,7 +2,7 @@
 #ifndef RSSTAB_CLI_RUN_COMMAND_H_
 #define RSSTAB_CLI_RUN_COMMAND_H_
 
-#include "cli/cli_options.h"
+#include "cli/invocation.h"
 
 namespace rsstab::cli {
 

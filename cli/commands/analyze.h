@@ -2,7 +2,7 @@
 #ifndef RSSTAB_CLI_COMMANDS_ANALYZE_H_
 #define RSSTAB_CLI_COMMANDS_ANALYZE_H_
 
-#include "cli/cli_options.h"
+#include "cli/invocation.h"
 #include "cli/command_context.h"
 #include "igf/base/result.h"
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "cli/cli_options.h"
+#include "cli/invocation.h"
 #include "cli/command_context.h"
 #include "igf/base/result.h"
 #include "stabilizer/pipeline/calibrator.h"

@@ -15,7 +15,7 @@
 #include "cli/media/output_file.h"
 #include "cli/media/source_access.h"
 #include "cli/media/video_info.h"
-#include "cli/media/video_writer.h"
+#include "cli/media/writer_options.h"
 #include "igf/base/log.h"
 #include "igf/base/result.h"
 

@@ -13,7 +13,7 @@
 #include "cli/media/av_handles.h"
 #include "cli/media/frame_converter.h"
 #include "cli/media/pixel_format.h"
-#include "cli/media/video_writer.h"
+#include "cli/media/writer_options.h"
 #include "igf/base/result.h"
 
 namespace rsstab::media {

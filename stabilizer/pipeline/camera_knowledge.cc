@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stabilizer/pipeline/camera_knowledge.h"
 
+#include <algorithm>
+#include <thread>
+
 #include "igf/camera_profile_reader.h"
 
 namespace rsstab::pipeline {
@@ -27,6 +30,28 @@ CameraKnowledge WhatIsKnown(const StabilizeOptions& options, const ClipGeometry&
     known.camera.readout_s = *inputs.readout_s;
   }
   return known;
+}
+
+stabilizer::ClipCalibrationOptions CalibrationOptions(const StabilizeOptions& options,
+                                                      const ClipGeometry& clip,
+                                                      const RsInputs& inputs) {
+  const CameraKnowledge known = WhatIsKnown(options, clip, inputs);
+  stabilizer::ClipCalibrationOptions calibration;
+  calibration.frame_interval_s = 1.0 / clip.frames_per_second;
+  calibration.readout_s = known.camera.readout_s;
+  if (known.focal_is_known) {
+    calibration.focal = known.camera.fx / known.camera.width;
+  }
+  calibration.num_threads =
+      options.num_threads > 0 ? options.num_threads
+                              : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return calibration;
+}
+
+std::optional<Camera> KnownLens(const StabilizeOptions& options, const ClipGeometry& clip,
+                                const RsInputs& inputs) {
+  const CameraKnowledge known = WhatIsKnown(options, clip, inputs);
+  return known.lens_is_known ? std::optional<Camera>(known.camera) : std::nullopt;
 }
 
 }  // namespace rsstab::pipeline

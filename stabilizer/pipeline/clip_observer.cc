@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "stabilizer/pipeline/camera_knowledge.h"
 #include "stabilizer/track_cells.h"
 
 namespace rsstab::pipeline {

@@ -7,8 +7,11 @@
 #include "igf/base/point_tracks.h"
 #include "igf/base/result.h"
 #include "igf/gyro_video_sync.h"
+#include "stabilizer/clip_calibration.h"
 #include "stabilizer/pipeline/camera_knowledge.h"
-#include "stabilizer/pipeline/rs_source_selection.h"
+#include "stabilizer/pipeline/rs_inputs.h"
+#include "stabilizer/pipeline/rs_selection.h"
+#include "stabilizer/pipeline/stabilize_options.h"
 
 namespace rsstab::pipeline {
 

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "stabilizer/pipeline/camera_knowledge.h"
 #include "stabilizer/rs_motion_fusion.h"
 
 namespace rsstab::pipeline {

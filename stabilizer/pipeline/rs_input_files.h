@@ -7,7 +7,7 @@
 #include "igf/base/log.h"
 #include "igf/base/result.h"
 #include "igf/gyro_log_reader.h"
-#include "stabilizer/pipeline/rs_source_selection.h"
+#include "stabilizer/pipeline/rs_inputs.h"
 #include "stabilizer/pipeline/stabilize_options.h"
 
 namespace rsstab::pipeline {

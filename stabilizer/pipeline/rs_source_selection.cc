@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stabilizer/pipeline/rs_source_selection.h"
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string_view>
-#include <thread>
 #include <utility>
 
 #include "rsdiff/diffusion_motion_source.h"
@@ -158,28 +155,6 @@ Result<RsSelection> SelectFused(const StabilizeOptions& options, const ClipGeome
 }
 
 }  // namespace
-
-stabilizer::ClipCalibrationOptions CalibrationOptions(const StabilizeOptions& options,
-                                                      const ClipGeometry& clip,
-                                                      const RsInputs& inputs) {
-  const CameraKnowledge known = WhatIsKnown(options, clip, inputs);
-  stabilizer::ClipCalibrationOptions calibration;
-  calibration.frame_interval_s = 1.0 / clip.frames_per_second;
-  calibration.readout_s = known.camera.readout_s;
-  if (known.focal_is_known) {
-    calibration.focal = known.camera.fx / known.camera.width;
-  }
-  calibration.num_threads =
-      options.num_threads > 0 ? options.num_threads
-                              : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  return calibration;
-}
-
-std::optional<Camera> KnownLens(const StabilizeOptions& options, const ClipGeometry& clip,
-                                const RsInputs& inputs) {
-  const CameraKnowledge known = WhatIsKnown(options, clip, inputs);
-  return known.lens_is_known ? std::optional<Camera>(known.camera) : std::nullopt;
-}
 
 bool NeedsPictures(const StabilizeOptions& options, const RsInputs& inputs) {
   return (options.rs == RsChoice::kFused ||

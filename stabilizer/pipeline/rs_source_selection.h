@@ -4,30 +4,18 @@
 
 #include <optional>
 #include <span>
-#include <string>
 
-#include "igf/base/camera.h"
 #include "igf/base/log.h"
 #include "igf/base/point_tracks.h"
 #include "igf/base/result.h"
-#include "igf/gyro_log.h"
 #include "stabilizer/clip_calibration.h"
 #include "stabilizer/pipeline/clip_geometry.h"
 #include "stabilizer/pipeline/readout_from_pictures.h"
+#include "stabilizer/pipeline/rs_inputs.h"
 #include "stabilizer/pipeline/rs_selection.h"
 #include "stabilizer/pipeline/stabilize_options.h"
 
 namespace rsstab::pipeline {
-
-// What the host found beside the pictures. Files and telemetry tracks are read by the host.
-struct RsInputs {
-  std::optional<igf::GyroLog> gyro;  // camera axes, its own clock
-  std::string gyro_origin;           // file or track it came from, for messages
-  // The log was recorded into the clip: both clocks agree but for a fraction of a second.
-  bool gyro_shares_clock = false;
-  std::optional<Camera> camera;     // any size; rescaled to the clip's
-  std::optional<double> readout_s;  // from the telemetry, when it says so
-};
 
 // What the pictures of the clip told, once they were all seen.
 struct ClipEvidence {
@@ -48,15 +36,6 @@ struct ClipEvidence {
 [[nodiscard]] Result<PictureReadout> AskPictures(const StabilizeOptions& options,
                                                  const ReadoutPictures& pictures,
                                                  double frame_interval_s);
-
-// What the clip's calibration has to find out, from what is known already.
-[[nodiscard]] stabilizer::ClipCalibrationOptions CalibrationOptions(const StabilizeOptions& options,
-                                                                    const ClipGeometry& clip,
-                                                                    const RsInputs& inputs);
-
-// The lens to take out of the tracks; empty when none is known.
-[[nodiscard]] std::optional<Camera> KnownLens(const StabilizeOptions& options,
-                                              const ClipGeometry& clip, const RsInputs& inputs);
 
 // Chooses the rolling-shutter source, and says why. `evidence` is needed when NeedsTracks();
 // without a calibration the tracks' own motion is not used. With kAuto an untrustworthy gyro means
