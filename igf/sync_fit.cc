@@ -127,6 +127,9 @@ class SyncProblem {
   [[nodiscard]] std::size_t num_covered() const { return num_covered_; }
 
   bool Solve(double loss_scale_px) {
+    if (!CanStart()) {
+      return false;
+    }
     ceres::Problem problem;
     Build(loss_scale_px, problem);
     ceres::Solver::Options solver;
@@ -164,8 +167,7 @@ class SyncProblem {
       residual_sq = motion_sq;
       for (std::size_t i = group.begin; group.is_covered && i < group.end; ++i) {
         Eigen::Vector2d r;
-        if (residuals_[i](Value(kOffset), Value(kBias), Value(kLogFocal), Value(kCurvature),
-                          Value(kReadout), kNoDrift.data(), r.data())) {
+        if (ResidualOf(i, kNoDrift.data(), r)) {
           residual_sq[i - group.begin] = r.squaredNorm();
         }
       }
@@ -236,6 +238,24 @@ class SyncProblem {
   double* Parameter(std::size_t block) { return &parameters_[kBlockStart[block]]; }
   [[nodiscard]] const double* Value(std::size_t block) const {
     return &parameters_[kBlockStart[block]];
+  }
+
+  // However silent, Ceres complains on standard error of a start that cannot be evaluated.
+  [[nodiscard]] bool CanStart() const {
+    for (const Group& group : groups_) {
+      for (std::size_t i = group.begin; group.is_covered && i < group.end; ++i) {
+        Eigen::Vector2d unused;
+        if (!ResidualOf(i, drifts_px_[drift_of_match_[i]].data(), unused)) {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  bool ResidualOf(std::size_t i, const double* drift_px, Eigen::Vector2d& residual_px) const {
+    return residuals_[i](Value(kOffset), Value(kBias), Value(kLogFocal), Value(kCurvature),
+                         Value(kReadout), drift_px, residual_px.data());
   }
 
   // Bounds and a weak prior for a block of one parameter; or holds it where it is.

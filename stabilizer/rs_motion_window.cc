@@ -241,6 +241,14 @@ bool RsMotionWindow::Solve(int max_iterations) {
   }
   s.Free(&s.readout_s, s.freedom.readout);
   s.Free(&s.log_focal, s.freedom.focal);
+  // However silent, Ceres complains on standard error of a start that cannot be evaluated.
+  s.state.PrepareForEvaluation(false, true);
+  for (const ceres::ResidualBlockId block : s.track_blocks) {
+    if (double cost = 0.0; !s.problem.EvaluateResidualBlockAssumingParametersUnchanged(
+            block, false, &cost, nullptr, nullptr)) {
+      return false;
+    }
+  }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   options.max_num_iterations = max_iterations;

@@ -53,6 +53,13 @@ double Length(const RotationZoomResidual& match, const Parameters& parameters) {
 
 bool Solve(std::span<const RotationZoomResidual> matches, std::span<const std::uint8_t> use,
            double huber_px, Parameters& parameters) {
+  // However silent, Ceres complains on standard error of a start that cannot be evaluated.
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    Eigen::Vector2d unused;
+    if (use[i] != 0 && !matches[i](parameters.data(), unused.data())) {
+      return false;
+    }
+  }
   ceres::Problem problem;
   ceres::LossFunction* loss = huber_px > 0.0 ? new ceres::HuberLoss(huber_px) : nullptr;
   for (std::size_t i = 0; i < matches.size(); ++i) {

@@ -51,13 +51,20 @@ std::optional<Eigen::Matrix3d> Refine(std::span<const PointMatch> matches,
   std::array<double, 8> parameters = {h(0, 0), h(0, 1), h(0, 2), h(1, 0),
                                       h(1, 1), h(1, 2), h(2, 0), h(2, 1)};
   ceres::Problem problem;
-  ceres::LossFunction* loss =
-      scale_px > 0.0 ? new ceres::CauchyLoss(scale_px * unit(0, 0)) : nullptr;
+  // The problem owns it from the first match on.
+  ceres::LossFunction* loss = nullptr;
   for (const PointMatch& match : matches) {
-    const Eigen::Vector2d from = Project(unit, match.from.cast<double>());
-    const Eigen::Vector2d to = Project(unit, match.to.cast<double>());
+    const HomographyResidual residual{Project(unit, match.from.cast<double>()),
+                                      Project(unit, match.to.cast<double>())};
+    // However silent, Ceres complains on standard error of a start that cannot be evaluated.
+    if (Eigen::Vector2d unused; !residual(parameters.data(), unused.data())) {
+      return std::nullopt;
+    }
+    if (loss == nullptr && scale_px > 0.0) {
+      loss = new ceres::CauchyLoss(scale_px * unit(0, 0));
+    }
     problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<HomographyResidual, 2, 8>(new HomographyResidual{from, to}),
+        new ceres::AutoDiffCostFunction<HomographyResidual, 2, 8>(new HomographyResidual(residual)),
         loss, parameters.data());
   }
   ceres::Solver::Options options;

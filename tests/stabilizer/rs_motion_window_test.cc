@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "igf/base/rotation.h"
 #include "igf/so3_spline.h"
 #include "tests/stabilizer/shaky_camera.h"
 
@@ -84,6 +85,23 @@ INSTANTIATE_TEST_SUITE_P(Motions, KnownReadout,
                                            Case{MotionPreset::kWalking, 0.025, 0.15},
                                            Case{MotionPreset::kWalking, -0.025, 0.15},
                                            Case{MotionPreset::kVibration, 0.028, 0.87}));
+
+TEST(RsMotionWindow, RefusesInSilenceAStartThatLooksAway) {
+  const ShakyCamera camera(MotionPreset::kHandheld, kReadout);
+  const auto pairs = camera.Pairs(RegularTimes(kFrames));
+  const RsMotionModel model = camera.Model();
+  SplineStretch stretch;
+  ExtendStretch(model, pairs, stretch);
+  for (std::size_t k = 0; k < stretch.knots.size(); ++k) {
+    // From frame to frame by more than 90 degrees.
+    stretch.knots[k] =
+        ExpSo3(Eigen::Vector3d(0.0, 2.0 / kKnotsPerFrame * static_cast<double>(k), 0.0));
+  }
+  RsMotionWindow window(model, pairs, std::move(stretch), 1, {});
+  ::testing::internal::CaptureStderr();
+  EXPECT_FALSE(window.Solve(kIterations));
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+}
 
 TEST(RsMotionWindow, ReadoutAndFocalLengthAreFoundFromNearby) {
   const ShakyCamera camera(MotionPreset::kWalking, kReadout);

@@ -56,6 +56,16 @@ TEST(FitRotationZoom, FindsTurnAndZoomWithTheirSigns) {
   EXPECT_EQ(fit->inlier[1], 1);
 }
 
+TEST(FitRotationZoom, RefusesInSilenceWhatLiesBehindTheCamera) {
+  auto matches = GridMatches(Eigen::Matrix3d::Identity());
+  for (PointMatch& match : matches) {
+    match.to.x() += 3.0F * static_cast<float>(kFocal);  // as a turn: 3 rad
+  }
+  ::testing::internal::CaptureStderr();
+  EXPECT_FALSE(FitRotationZoom(matches, TestCamera(), TestCamera()));
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+}
+
 TEST(FitRotationZoom, DoesNotExplainAShiftOrAStretch) {
   // A shift of 8 px is a turn of 8/f but for the perspective that goes with it, 8 (x / f)^2 along
   // x.

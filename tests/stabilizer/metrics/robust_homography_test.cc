@@ -72,6 +72,14 @@ TEST(RobustHomography, RefusesMatchesThatShareNothing) {
   EXPECT_FALSE(LeastSquaresHomography(matches, Eigen::Matrix3d::Identity()));
 }
 
+TEST(RobustHomography, RefusesInSilenceAStartThatTurnsPointsBack) {
+  Eigen::Matrix3d start = SomeHomography();
+  start(2, 0) = -1.0 / 300.0;  // beyond x = 300 the denominator is negative
+  ::testing::internal::CaptureStderr();
+  EXPECT_FALSE(LeastSquaresHomography(Matches(0.0, 0), start));
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+}
+
 TEST(RobustHomography, RefusesPointsOnOneSpot) {
   const std::vector<PointMatch> matches(30, PointMatch{{5.0F, 5.0F}, {6.0F, 6.0F}});
   EXPECT_FALSE(RobustHomography(matches, kScalePx));
