@@ -74,7 +74,7 @@ const std::vector<ClipFigure>& ClipFigures() {
       {"rs_epe_px", "EPE", 7, 3, kWhereKnown, Of(&ClipRun::field, &Score::epe_px)},
       {"rs_epe_uncorrected_px", "EPE in", 7, 3, kWhereKnown,
        Of(&ClipRun::field, &Score::uncorrected_epe_px)},
-      {"path_angle_deg", "angle", 7, 2, kWhereKnown, Of(&ClipRun::angle, &Angle::angle_deg)},
+      {"path_angle_deg", "angle", 8, 3, kWhereKnown, Of(&ClipRun::angle, &Angle::angle_deg)},
       {"path_angle_uncorrected_deg", "angle in", 9, 2, kWhereKnown,
        Of(&ClipRun::angle, &Angle::uncorrected_angle_deg)},
       {"path_rate_deg_s", "rate", 7, 2, kWhereKnown, Of(&ClipRun::angle, &Angle::rate_deg_s)},

@@ -27,6 +27,13 @@ struct ClipFigure {
 // In the order of the columns.
 [[nodiscard]] const std::vector<ClipFigure>& ClipFigures();
 
+// What the titles mean, for people; docs/evaluation.md has the definitions.
+inline constexpr const char* kClipFigureNote =
+    "px at 640 px width; RS: root mean square of the rolling-shutter field applied; EPE of that "
+    "field, in: of none; readout found, ms; angle (degrees) and rate (degrees/s): error of the "
+    "camera's rotation and of its change from frame to frame, in: of no rotation; ms a frame with "
+    "whatever else was running, own: less decoding and encoding";
+
 // Those of a table of `runs` on clips of one kind.
 [[nodiscard]] std::vector<const ClipFigure*> TableFigures(ClipKind kind,
                                                           const std::vector<const ClipRun*>& runs);

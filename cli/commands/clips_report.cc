@@ -209,11 +209,7 @@ std::string FormatText(const ClipsReport& report) {
   for (const Grid& grid : MeanGrids(report)) {
     text += ToText(grid, static_cast<int>(name_width));
   }
-  return text +
-         "\npx at 640 px width; RS: root mean square of the rolling-shutter field applied; EPE of "
-         "that field, in: of none; readout found, ms; angle (degrees) and rate (degrees/s): error "
-         "of the camera's rotation and of its change from frame to frame, in: of no rotation; ms a "
-         "frame with whatever else was running, own: less decoding and encoding\n";
+  return text + "\n" + kClipFigureNote + "\n";
 }
 
 std::string FormatJson(const ClipsReport& report) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/pages/clip_charts.h"
 
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -54,18 +57,23 @@ double ReadoutUncertainty(const stabilizer::ClipAnalysis& analysis) {
   return analysis.readout_s != 0.0 ? analysis.readout_sigma_s / std::abs(analysis.readout_s) : 0.0;
 }
 
-std::optional<report::ChartBand> BandAround(const ChartSeries& series, double share) {
+// Its legend tells how wide it gets, since that can be less than the line's own width.
+std::optional<report::ChartBand> BandAround(const ChartSeries& series, double share,
+                                            const char* unit) {
   if (!(share > 0.0)) {
     return std::nullopt;
   }
   report::ChartBand band;
-  band.name = "\u00b1 one standard deviation of the readout time";
+  double widest = 0.0;
   for (const Eigen::Vector2d& point : series.points) {
     const double reach = share * std::abs(point.y());
+    widest = std::max(widest, reach);
     band.x.push_back(point.x());
     band.low.push_back(point.y() - reach);
     band.high.push_back(point.y() + reach);
   }
+  band.name =
+      fmt::format("\u00b1 1 standard deviation of the readout: {:.2f} {} at most", widest, unit);
   return band;
 }
 
@@ -105,19 +113,19 @@ std::vector<LineChart> RsCharts(const std::vector<RsMoment>& moments,
     charts.back().series = {ChartSeries{}, std::move(series)};  // in the colour of what was done
     return charts.back();
   };
-  const auto add_motion = [&](const char* title, const char* unit, const char* description,
-                              double RsMoment::*value) {
-    LineChart& chart = add(title, unit, description, MomentSeries(moments, value));
-    chart.band = BandAround(chart.series.back(), uncertainty);
+  const auto add_motion = [&](const char* title, const char* axis, const char* unit,
+                              const char* description, double RsMoment::*value) {
+    LineChart& chart = add(title, axis, description, MomentSeries(moments, value));
+    chart.band = BandAround(chart.series.back(), uncertainty, unit);
     chart.include_zero = true;
   };
-  add_motion("Skew", "px, last row further right",
+  add_motion("Skew", "px, last row further right", "px",
              "How much further right the last row of each frame was recorded than the first.",
              &RsMoment::sideways_px);
-  add_motion("Stretch", "px, last row further down",
+  add_motion("Stretch", "px, last row further down", "px",
              "How much further down the last row of each frame was recorded than the first.",
              &RsMoment::upright_px);
-  add_motion("Twist", "degrees clockwise",
+  add_motion("Twist", "degrees clockwise", "degrees",
              "How far the last row of each frame is turned against the first.",
              &RsMoment::turn_deg);
   add("Kept of each side", "%", "How much of the picture's width and height is shown.",

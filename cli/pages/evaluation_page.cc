@@ -7,6 +7,7 @@
 #include <functional>
 #include <utility>
 
+#include "cli/commands/clip_figures.h"
 #include "cli/pages/clip_charts.h"
 #include "cli/pages/evaluation_tables.h"
 #include "cli/pages/page_parts.h"
@@ -143,7 +144,7 @@ Result<std::string> MakeEvaluationPage(const ClipsReport& report,
   HtmlPage html =
       BeginPage("clips", report.header,
                 fmt::format("{} clips, {} methods", report.clips.size(), report.methods.size()));
-  html.BeginSection("Figures", "px at 640 px width; ms a frame with whatever else was running.");
+  html.BeginSection("Figures", std::string(kClipFigureNote) + ".");
   AddTables(FigureTables(report), html);
   if (Status status = AddShowcases(report, html); !status) {
     return Propagate(status.error());

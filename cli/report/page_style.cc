@@ -34,6 +34,7 @@ vertical-align:baseline}
 thead th{color:var(--faint);font-weight:500;font-size:13px;white-space:nowrap;
 border-bottom-color:var(--faint)}
 tbody th{font-weight:400;overflow-wrap:anywhere;min-width:7.5em}
+.wide thead th:first-child,.wide tbody th{position:sticky;left:0;background:var(--paper)}
 @media(max-width:640px){table{font-size:14px}th,td{padding-right:8px}}
 .note{color:var(--faint);padding-left:8px}
 @media(max-width:640px){.note{display:none}}

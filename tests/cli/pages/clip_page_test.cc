@@ -144,7 +144,7 @@ TEST(MakeClipPage, StatesTheReadoutWithItsUncertainty) {
   const auto html = MakeClipPage(page);
   ASSERT_TRUE(html);
   EXPECT_THAT(*html, HasSubstr("17.3 \u00b1 0.7 ms, first row to last"));
-  EXPECT_THAT(*html, HasSubstr("\u00b1 one standard deviation of the readout time"));
+  EXPECT_THAT(*html, HasSubstr("\u00b1 1 standard deviation of the readout: 0.32 px at most"));
   EXPECT_THAT(*html, HasSubstr("class=\"band\""));
 }
 
