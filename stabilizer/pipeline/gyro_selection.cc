@@ -45,6 +45,20 @@ Status CheckOverlap(const igf::GyroLog& log, double offset_s, std::span<const Po
               offset_s, log_begin_s, log_end_s, clip_begin_s, clip_end_s);
 }
 
+// How many of the clip's frames were read out, and reached from the frame before, while the log
+// knows the camera.
+double CoveredShare(const igf::OrientationTrack& track, double readout_s,
+                    std::span<const PointTracks> tracks) {
+  if (tracks.empty()) {
+    return 1.0;
+  }
+  const double half_s = 0.5 * std::abs(readout_s);
+  const auto covered = std::count_if(tracks.begin(), tracks.end(), [&](const PointTracks& pair) {
+    return track.Covers(pair.from_time_s - half_s, pair.to_time_s + half_s);
+  });
+  return static_cast<double>(covered) / static_cast<double>(tracks.size());
+}
+
 }  // namespace
 
 Result<igf::GyroSyncResult> BringIntoStep(const StabilizeOptions& options,
@@ -138,8 +152,8 @@ Result<RsSelection> SelectGyro(const StabilizeOptions& options, CameraKnowledge 
     return Propagate(std::move(track.error()), inputs.gyro_origin);
   }
   known.camera.readout_s = readout_s;
-  auto source =
-      igf::GyroMotionSource::Create(field_camera, readout_s, track->WithOffset(sync->offset_s));
+  const igf::OrientationTrack in_step = track->WithOffset(sync->offset_s);
+  auto source = igf::GyroMotionSource::Create(field_camera, readout_s, in_step);
   if (!source) {
     return Propagate(std::move(source.error()), inputs.gyro_origin);
   }
@@ -149,6 +163,7 @@ Result<RsSelection> SelectGyro(const StabilizeOptions& options, CameraKnowledge 
   selection.readout_s = readout_s;
   selection.rotation_is_known = true;
   selection.gyro_offset_s = sync->offset_s;
+  selection.covered_share = CoveredShare(in_step, readout_s, tracks);
   selection.calibration = CalibrationOf(*sync, known_before);
   selection.reason = fmt::format(
       "gyro log {} ({:.0f} Hz), offset {:.1f} ms{}, readout {:.1f} ms ({}), focal length {:.0f} px "

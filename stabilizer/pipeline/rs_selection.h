@@ -23,6 +23,7 @@ struct RsSelection {
   // So well that whatever else moves is an object of the scene: nothing may follow it.
   bool only_turns = false;
   std::optional<double> gyro_offset_s;
+  double covered_share = 1.0;                              // of the clip's frames, by the gyro log
   std::optional<stabilizer::ClipCalibration> calibration;  // what the clip told, if asked
   std::string reason;  // one sentence for the log and the analysis file
 };

@@ -15,6 +15,10 @@
 namespace rsstab::pipeline {
 namespace {
 
+// Less of a clip than this, and a log is worth less than the tracks. Logs that begin or end within
+// the first or last frames have more.
+constexpr double kMinCoveredShare = 0.95;
+
 RsSelection WithoutSource(const CameraKnowledge& known, std::string reason) {
   RsSelection selection;
   if (known.focal_is_known) {
@@ -202,10 +206,18 @@ Result<RsSelection> SelectRsSource(const StabilizeOptions& options, const ClipGe
   const bool may_use_gyro = options.rs == RsChoice::kAuto || options.rs == RsChoice::kGyro;
   if (may_use_gyro && inputs.gyro) {
     auto selection = SelectGyro(options, known, inputs, evidence.tracks);
-    if (selection || options.rs == RsChoice::kGyro) {
+    // A log with holes leaves frames as they are; tracks that tell the shutter do not.
+    const bool has_better =
+        selection && selection->covered_share < kMinCoveredShare && evidence.calibration &&
+        evidence.calibration->verdict != stabilizer::ShutterVerdict::kCannotBeTold;
+    if (options.rs == RsChoice::kGyro || (selection && !has_better)) {
       return selection;
     }
-    logger->warn("the gyro log is not used: {}", selection.error().message);
+    logger->warn("the gyro log is not used: {}",
+                 has_better ? fmt::format("it knows {:.0f} % of the frames only (--rs gyro uses it "
+                                          "where it knows them, and leaves the others alone)",
+                                          100.0 * selection->covered_share)
+                            : selection.error().message);
   }
   if (options.rs == RsChoice::kGyro) {
     return Fail(ErrorCode::kNotFound,

@@ -6,6 +6,7 @@
 
 #include "igf/gyro_simulator.h"
 #include "igf/motion_presets.h"
+#include "stabilizer/pipeline/rs_source_selection.h"
 #include "tests/igf/synthetic_tracks.h"
 
 namespace rsstab::pipeline {
@@ -21,18 +22,22 @@ constexpr double kTolerance_s = 0.5e-3;  // tenth of the error that is to be fou
 class GyroSelection : public ::testing::Test {
  protected:
   GyroSelection() {
-    const auto truth = *igf::MakePresetOrientation(igf::MotionPreset::kWalking, 3, kDuration_s);
-    igf::GyroSimulatorOptions log;
-    log.sampling_hz = 500.0;
-    log.offset_s = kOffset_s;
-    log.noise_rad_s = 0.002;
-    inputs_.gyro = *igf::SimulateGyro(truth, -0.3, kDuration_s + 0.3, log);
+    WriteLog(kDuration_s + 0.3);
     inputs_.gyro_origin = "log.csv";
     inputs_.camera = Camera::Pinhole(640, 360, 554.0);
     inputs_.camera->readout_s = kReadout_s;
     igf::testing::SyntheticTrackOptions options;
     options.readout_s = kReadout_s;
-    tracks_ = igf::testing::MakeTracks(*inputs_.camera, truth, kDuration_s, options);
+    tracks_ = igf::testing::MakeTracks(*inputs_.camera, truth_, kDuration_s, options);
+  }
+
+  // A log that ends at this time of the clip.
+  void WriteLog(double end_s) {
+    igf::GyroSimulatorOptions log;
+    log.sampling_hz = 500.0;
+    log.offset_s = kOffset_s;
+    log.noise_rad_s = 0.002;
+    inputs_.gyro = *igf::SimulateGyro(truth_, -0.3, end_s, log);
   }
 
   Result<RsSelection> Select(RsChoice choice, double offset_s) {
@@ -42,6 +47,8 @@ class GyroSelection : public ::testing::Test {
     return SelectGyro(options, WhatIsKnown(options, {640, 360, 30.0}, inputs_), inputs_, tracks_);
   }
 
+  igf::OrientationTrack truth_ =
+      *igf::MakePresetOrientation(igf::MotionPreset::kWalking, 3, kDuration_s);
   RsInputs inputs_;
   std::vector<PointTracks> tracks_;
 };
@@ -76,6 +83,27 @@ TEST_F(GyroSelection, TheReadoutTheTracksGiveIsTold) {
   EXPECT_NEAR(selection->calibration->readout_s.value, kReadout_s, 0.05 * kReadout_s);
   EXPECT_GT(selection->calibration->readout_s.sigma, 0.0);
   EXPECT_TRUE(selection->calibration->focal.trusted);
+}
+
+// A log of half the clip: auto goes by the tracks if they tell the shutter, gyro keeps the log.
+TEST_F(GyroSelection, AutoPrefersTracksToALogWithHoles) {
+  stabilizer::ClipCalibration told;
+  told.verdict = stabilizer::ShutterVerdict::kRolling;
+  told.readout_s = {kReadout_s, 0.1e-3, true};
+  stabilizer::ClipCalibration untold;
+  StabilizeOptions options;
+  const auto source_of = [&](RsChoice choice, const stabilizer::ClipCalibration& calibration) {
+    options.rs = choice;
+    const auto selection = SelectRsSource(options, {640, 360, 30.0}, inputs_,
+                                          {tracks_, calibration, {}}, SilentLogger());
+    return selection ? selection->source->Name() : selection.error().message;
+  };
+  EXPECT_EQ(source_of(RsChoice::kAuto, told), "gyro") << "the log covers the clip";
+  WriteLog(0.5 * kDuration_s);
+  EXPECT_NEAR(Select(RsChoice::kGyro, kOffset_s)->covered_share, 0.5, 0.05);
+  EXPECT_EQ(source_of(RsChoice::kAuto, told), "fused");
+  EXPECT_EQ(source_of(RsChoice::kAuto, untold), "gyro") << "half is better than nothing";
+  EXPECT_EQ(source_of(RsChoice::kGyro, told), "gyro");
 }
 
 }  // namespace
