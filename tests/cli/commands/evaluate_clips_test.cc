@@ -218,6 +218,32 @@ TEST_F(EvaluateClipsTest, MeansAreOverTheClipsOfAKind) {
   EXPECT_THAT(FormatText(report), HasSubstr("mean of 2 real clips"));
 }
 
+// A clip without a truth, but with a log that one of the methods reads.
+TEST_F(EvaluateClipsTest, ALogStandsInForTheTrueRotation) {
+  const TemporaryFolder real;
+  std::filesystem::copy_file(*folder_ / "vibration" / "rs.mp4", real / "clip.mp4");
+  const std::string known =
+      "camera=" + (*folder_ / "vibration" / "camera.json").string() + ",readout=20";
+  const std::string gyro =
+      "gyro@gyro-offset=0," + known + ",gyro=" + (*folder_ / "vibration" / "gyro.csv").string();
+  const std::string tracks = "tracks@" + known;
+  EvaluateOptions options = Options("", "input," + tracks + "," + gyro);
+  options.clips = real.path().string();
+  const auto report = EvaluateClips(options, SilentLogger());
+  ASSERT_TRUE(report) << report.error().message;
+  const ClipRecord& clip = report->clips.front();
+  EXPECT_EQ(clip.kind, ClipKind::kReal);
+  EXPECT_FALSE(RunOf(clip, "input").angle);
+  EXPECT_FALSE(RunOf(clip, gyro).angle);  // against itself
+  const auto& angle = RunOf(clip, tracks).angle;
+  ASSERT_TRUE(angle && angle->rate_deg_s);
+  EXPECT_LT(*angle->rate_deg_s, 0.1 * angle->uncorrected_rate_deg_s.value());
+  EXPECT_THAT(FormatText(*report), HasSubstr("angle in"));
+  // Nobody knows it of the other real clip, and so its table has no such columns.
+  EXPECT_THAT(FormatText(*EvaluateClips(Options(".", "off"), SilentLogger())),
+              ::testing::ContainsRegex("real.mkv.*\n.*RS readout analysis"));
+}
+
 TEST_F(EvaluateClipsTest, WhatFailsIsNamedAndTheRestGoesOn) {
   // The real clip has no log, the broken one is none.
   const auto report = EvaluateClips(Options(".", "gyro,off"), SilentLogger());
