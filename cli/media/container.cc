@@ -38,8 +38,8 @@ Result<const AVOutputFormat*> ChooseContainer(const std::string& path, const std
   const AVOutputFormat* guessed = av_guess_format(nullptr, path.c_str(), nullptr);
   if (guessed == nullptr || guessed->video_codec == AV_CODEC_ID_NONE) {
     return Fail(ErrorCode::kUnsupported,
-                "{}: its name does not say which container to write; end it in .mp4, .mov or .mkv, "
-                "or give --format",
+                "{}: its name does not say which container to write; end it in .mp4, .mov, .mkv "
+                "or .webm",
                 path);
   }
   return guessed;
