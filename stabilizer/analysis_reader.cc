@@ -104,6 +104,7 @@ Result<std::unique_ptr<AnalysisReader>> AnalysisReader::Open(const std::string& 
       !s.Fill(kFooterSize) ||
       std::memcmp(s.buffer.data() + kFooterSize - kEndMagic.size(), kEndMagic.data(),
                   kEndMagic.size()) != 0) {
+    s.offset = std::filesystem::file_size(path, error);  // where the rest should have begun
     return s.Damaged("its end is missing");
   }
   ByteSource footer(s.buffer);

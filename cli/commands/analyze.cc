@@ -25,8 +25,8 @@ Status RunAnalyze(const Invocation& invocation, const CommandContext& context) {
   if (!analysis) {
     return Propagate(analysis.error());
   }
-  context.logger->info("{}: {} frames analysed, smallest crop ratio {:.3f}", analysis_file,
-                       analysis->num_frames, analysis->smallest_kept_ratio);
+  context.logger->info("{}: {} frames analysed, at least {:.1f} % of each side kept", analysis_file,
+                       analysis->num_frames, 100.0 * analysis->smallest_kept_ratio);
   return {};
 }
 
