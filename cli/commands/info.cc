@@ -28,8 +28,11 @@ Result<std::string> Plan(const pipeline::StabilizeOptions& options, const media:
         inputs.gyro && may_use_log
             ? "the gyro log would be brought into step with the picture and, if that can be "
               "trusted, tell the motion inside each frame"
-            : "the readout time, if not given, and the motion inside each frame would be found "
-              "from the clip's tracks");
+        : pipeline::NeedsPictures(options, inputs)
+            ? "the readout time would be found from the clip's tracks and from what single "
+              "pictures of it show, the motion inside each frame from its tracks"
+            : "the motion inside each frame, and the readout time if it is not given, would be "
+              "found from the clip's tracks");
   }
   pipeline::ClipGeometry geometry{clip.width, clip.height};
   const auto selection = pipeline::SelectRsSource(options, geometry, inputs, {}, logger);

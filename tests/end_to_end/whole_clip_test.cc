@@ -163,7 +163,15 @@ TEST_F(WholeClip, InfoTellsWhatIsThere) {
   const std::string text = RunOrFail({"info", Path("plain.mp4")}).output;
   EXPECT_THAT(text, ::testing::HasSubstr("160x120"));
   EXPECT_THAT(text, ::testing::HasSubstr("45 frames"));
-  EXPECT_THAT(text, ::testing::HasSubstr("found from the clip's tracks"));
+  EXPECT_THAT(text, ::testing::HasSubstr("from what single pictures of it show"));
+  for (const std::vector<std::string>& told :
+       {std::vector<std::string>{"--readout", "20"}, {"--rs", "tracks"}}) {
+    std::vector<std::string> arguments = {"info", Path("plain.mp4")};
+    arguments.insert(arguments.end(), told.begin(), told.end());
+    EXPECT_THAT(RunOrFail(arguments).output,
+                ::testing::AllOf(::testing::HasSubstr("found from the clip's tracks"),
+                                 ::testing::Not(::testing::HasSubstr("single pictures"))));
+  }
 }
 
 }  // namespace
