@@ -63,7 +63,7 @@ static int RunLive(rsstab_options* options, const rsstab_video* video) {
   int count = 0;
   int ok = rsstab_create_live(options, video, &instance) == RSSTAB_OK;
   if (!ok) {
-    fprintf(stderr, "%s\n", rsstab_options_error(options));
+    fprintf(stderr, "live: %s\n", rsstab_options_error(options));
     return 0;
   }
   for (int i = 0; ok && i < kFrames; ++i) {
@@ -82,6 +82,10 @@ static int RunLive(rsstab_options* options, const rsstab_video* video) {
 static int Analyze(rsstab_options* options, const rsstab_video* video, const char* path) {
   rsstab_instance* instance = NULL;
   int ok = rsstab_create_analyze(options, video, path, &instance) == RSSTAB_OK;
+  if (!ok) {
+    fprintf(stderr, "analyze: %s\n", rsstab_options_error(options));
+    return 0;
+  }
   for (int i = 0; ok && i < kFrames; ++i) {
     Paint(&g_input, i);
     const rsstab_picture picture = ToRead(&g_input);
@@ -89,7 +93,7 @@ static int Analyze(rsstab_options* options, const rsstab_video* video, const cha
   }
   ok = ok && rsstab_flush(instance) == RSSTAB_OK;
   if (!ok) {
-    fprintf(stderr, "analyze: %s%s\n", rsstab_options_error(options), rsstab_error(instance));
+    fprintf(stderr, "analyze: %s\n", rsstab_error(instance));
   }
   rsstab_destroy(instance);
   return ok;
@@ -98,6 +102,10 @@ static int Analyze(rsstab_options* options, const rsstab_video* video, const cha
 static int Apply(rsstab_options* options, const rsstab_video* video, const char* path) {
   rsstab_instance* instance = NULL;
   int ok = rsstab_create_apply(options, video, path, &instance) == RSSTAB_OK;
+  if (!ok) {
+    fprintf(stderr, "apply: %s\n", rsstab_options_error(options));
+    return 0;
+  }
   /* Any order: here backwards. */
   for (int i = kFrames - 1; ok && i >= 0; --i) {
     Paint(&g_input, i);
@@ -106,7 +114,7 @@ static int Apply(rsstab_options* options, const rsstab_video* video, const char*
     ok = rsstab_render(instance, &picture, i, &buffer) == RSSTAB_OK;
   }
   if (!ok) {
-    fprintf(stderr, "apply: %s%s\n", rsstab_options_error(options), rsstab_error(instance));
+    fprintf(stderr, "apply: %s\n", rsstab_error(instance));
   }
   rsstab_destroy(instance);
   return ok;
