@@ -13,8 +13,11 @@ int main(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   const auto parsed = ParseCommandLine(arguments);
   if (const auto* exit = std::get_if<EarlyExit>(&parsed)) {
-    std::fputs(exit->output.c_str(), stdout);
     std::fputs(exit->error.c_str(), stderr);
+    if (std::fputs(exit->output.c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
+      std::fputs("rs-stabilize: error: standard output cannot be written\n", stderr);
+      return kExitFailed;
+    }
     return exit->exit_code;
   }
   InstallSignalHandlers();

@@ -43,7 +43,8 @@ TEST_F(OutputFailure, FolderThatIsNotThere) {
 
 TEST_F(OutputFailure, FolderWhereNobodyMayWrite) {
   // Even root cannot make files there.
-  ExpectRefusal({"clip.mp4", "-o", "/proc/rs-stabilize.mp4"}, 1, "/proc");
+  ExpectRefusal({"clip.mp4", "-o", "/proc/rs-stabilize.mp4"}, 1,
+                "the folder '/proc' takes no new file");
 }
 
 TEST_F(OutputFailure, OutputIsAFolder) {
@@ -62,6 +63,17 @@ TEST_F(OutputFailure, FullDisk) {
 }
 
 TEST_F(OutputFailure, FullDevice) { ExpectRefusal({"clip.mp4", "-o", "/dev/full"}, 1, ""); }
+
+TEST_F(OutputFailure, HelpThatCannotBeWritten) {
+  ProgramSettings settings;
+  settings.folder = Path(".");
+  for (const char* arguments : {"--help", "evaluate --help", "--version", "info clip.mp4"}) {
+    const std::string script = "\"$0\" " + std::string(arguments) + " > /dev/full";
+    const ProgramResult run = RunProgram("/bin/sh", {"-c", script, RSSTAB_PROGRAM}, settings);
+    EXPECT_EQ(run.exit_code, 1) << arguments;
+    EXPECT_THAT(run.error, ::testing::HasSubstr("standard output cannot be written")) << arguments;
+  }
+}
 
 TEST_F(OutputFailure, ReportTakesNoFilesPlace) {
   WriteText(Path("report.html"), "precious");
