@@ -110,11 +110,10 @@ std::vector<CommandText> BuildTexts() {
        "",
        "[OPTIONS] IN [-o OUT]",
        "steadies a video clip and takes its rolling shutter out",
-       "Reads a shaky clip and writes a steady one of the same size, length and timestamps. Where "
-       "a "
-       "gyro log tells how the camera moved while a frame was read out, the skew and wobble of the "
-       "rolling shutter are removed as well. Audio, subtitles, chapters and metadata are copied "
-       "untouched.",
+       "Reads a shaky clip and writes a steady one of the same size, length and timestamps. The "
+       "skew and wobble of a rolling shutter are removed as well: how the camera moved while a "
+       "frame was read out is found from the clip itself, or read from a gyro log where there is "
+       "one. Audio, subtitles, chapters and metadata are copied untouched.",
        {{"rs-stabilize shaky.mp4", "writes shaky-stable.mp4 beside it"},
         {"rs-stabilize shaky.mp4 -o steady.mkv --smoothness 2", "calmer, in another container"},
         {"rs-stabilize drone.mp4 --gyro drone.gcsv --camera lens.json", "with a separate gyro log"},

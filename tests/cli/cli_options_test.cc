@@ -190,6 +190,11 @@ TEST(CliOptions, HelpFitsATerminalAndNamesEveryOption) {
   }
 }
 
+TEST(CliOptions, HelpSaysThatNoGyroLogIsNeeded) {
+  EXPECT_THAT(TextOf(CommandId::kStabilize).description, HasSubstr("found from the clip itself"));
+  EXPECT_THAT(Refused({"--print-manual"}).output, HasSubstr("found from the clip itself"));
+}
+
 TEST(CliOptions, ManualAndCompletionKnowTheOptions) {
   const std::string manual = Refused({"--print-manual"}).output;
   const std::string completion = Refused({"--print-bash-completion"}).output;
