@@ -141,9 +141,10 @@ Result<std::string> MakeEvaluationPage(const SyntheticReport& report,
 
 Result<std::string> MakeEvaluationPage(const ClipsReport& report,
                                        const std::vector<StageTime>& stages) {
-  HtmlPage html =
-      BeginPage("clips", report.header,
-                fmt::format("{} clips, {} methods", report.clips.size(), report.methods.size()));
+  HtmlPage html = BeginPage("clips", report.header,
+                            fmt::format("{} clip{}, {} method{}", report.clips.size(),
+                                        report.clips.size() == 1 ? "" : "s", report.methods.size(),
+                                        report.methods.size() == 1 ? "" : "s"));
   html.BeginSection("Figures", std::string(kClipFigureNote) + ".");
   AddTables(FigureTables(report), html);
   if (Status status = AddShowcases(report, html); !status) {

@@ -81,7 +81,7 @@ void HtmlPage::Add(std::span<const Highlight> highlights) {
 void HtmlPage::Add(const Table& table) {
   body_ += "<div class=\"wide\" tabindex=\"0\"><table>";
   if (!table.caption.empty()) {
-    body_ += "<caption>" + Escape(table.caption) + "</caption>";
+    body_ += "<caption><span>" + Escape(table.caption) + "</span></caption>";
   }
   const auto css_class = [&table](std::size_t column) {
     return table.has_notes && column + 1 == table.headings.size() ? "note" : "n";

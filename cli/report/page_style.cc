@@ -28,7 +28,7 @@ white-space:nowrap}
 @media(max-width:420px){.big{grid-template-columns:repeat(2,minmax(0,1fr))}.big dd{font-size:17px}}
 .wide{overflow-x:auto;margin-top:14px}
 table{border-collapse:collapse;font-variant-numeric:tabular-nums;min-width:min(100%,420px)}
-caption{text-align:left;font-weight:600;padding-bottom:6px}
+caption{text-align:left;font-weight:600;padding-bottom:6px}caption span{position:sticky;left:0}
 th,td{padding:5px 14px 5px 0;text-align:left;border-bottom:1px solid var(--grid);
 vertical-align:baseline}
 thead th{color:var(--faint);font-weight:500;font-size:13px;white-space:nowrap;
