@@ -30,40 +30,41 @@ Spec PassThroughOption() {
 }
 
 pipeline::OptionTable<EncodeOptions> BuildTable() {
-  pipeline::OptionTable<EncodeOptions> table;
-  const auto add = [&](Spec spec, std::string group, std::string help) {
-    spec.group = std::move(group);
-    spec.stage = pipeline::OptionStage::kRender;
-    spec.help = std::move(help);
-    table.push_back(std::move(spec));
-  };
+  pipeline::OptionTableBuilder<EncodeOptions> table;
   using O = EncodeOptions;
 
-  Spec output = pipeline::TextOption("output", "FILE", &O::output);
-  output.short_name = 'o';
-  add(std::move(output), "Output",
+  table.Group("Output", pipeline::OptionStage::kRender);
+  table.Add(
+      pipeline::TextOption("output", "FILE", &O::output, 'o'),
       "Clip to write; its ending chooses the container, - writes Matroska to standard output. "
       "Without it the clip lies beside the input, with -stable added to the name.");
-  add(pipeline::SwitchOption("overwrite", &O::overwrite), "Output",
-      "Replace the output file, and the report, if they exist.");
-  add(pipeline::TextOption("report", "FILE", &O::report), "Output",
+  table.Add(pipeline::SwitchOption("overwrite", &O::overwrite),
+            "Replace the output file, and the report, if they exist.");
+  table.Add(
+      pipeline::TextOption("report", "FILE", &O::report),
       "Also write an HTML page, all in one file: pictures before and after, the camera path, the "
       "motion within the frames, what was used and how long it took.");
-  add(pipeline::TextOption("codec", "NAME", &O::codec), "Encoding",
+
+  table.Group("Encoding", pipeline::OptionStage::kRender);
+  table.Add(
+      pipeline::TextOption("codec", "NAME", &O::codec),
       "h264, hevc, vp9, av1, mpeg4, mjpeg, ffv1, prores, or the name of any encoder of libavcodec. "
       "Without it what fits the container: H.264 where it can.");
-  add(pipeline::RealOption("crf", "N", &O::crf, {0.0, 51.0}), "Encoding",
+  table.Add(
+      pipeline::RealOption("crf", "N", &O::crf, {0.0, 51.0}),
       "Constant quality on the scale of x264, lower is better and larger. Without it 18 for H.264 "
       "and "
       "similar elsewhere.");
-  add(pipeline::TextOption("preset", "NAME", &O::preset), "Encoding",
+  table.Add(
+      pipeline::TextOption("preset", "NAME", &O::preset),
       "Speed against size: ultrafast to veryslow, or the encoder's own word. Without it medium.");
-  add(pipeline::TextOption("pix-fmt", "NAME", &O::pix_fmt), "Encoding",
+  table.Add(
+      pipeline::TextOption("pix-fmt", "NAME", &O::pix_fmt),
       "Pixel format to encode, such as yuv420p or yuv420p10le. Without it the clip's own, or the "
       "nearest one that the encoder takes.");
-  add(PassThroughOption(), "Encoding",
-      "Any other option of the encoder, passed on as it is. May be given several times.");
-  return table;
+  table.Add(PassThroughOption(),
+            "Any other option of the encoder, passed on as it is. May be given several times.");
+  return table.Take();
 }
 
 }  // namespace

@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/run_options.h"
 
-#include <utility>
-
 namespace rsstab::cli {
 namespace {
 
 pipeline::OptionTable<RunOptions> BuildTable() {
-  pipeline::OptionTable<RunOptions> table;
-  const auto add = [&](pipeline::OptionSpec<RunOptions> spec, std::string help) {
-    spec.group = "Running";
-    spec.help = std::move(help);
-    table.push_back(std::move(spec));
-  };
-  add(pipeline::ChoiceOption<RunOptions, ProgressStyle>("progress", &RunOptions::progress,
+  pipeline::OptionTableBuilder<RunOptions> table;
+  table.Group("Running");
+  table.Add(
+      pipeline::ChoiceOption<RunOptions, ProgressStyle>("progress", &RunOptions::progress,
                                                         {{"auto", ProgressStyle::kAuto},
                                                          {"bar", ProgressStyle::kBar},
                                                          {"plain", ProgressStyle::kPlain},
@@ -21,14 +16,14 @@ pipeline::OptionTable<RunOptions> BuildTable() {
                                                          {"none", ProgressStyle::kNone}}),
       "How progress is shown on standard error: a bar, plain lines, one JSON object a line, or "
       "nothing; auto shows a bar on a terminal and plain lines elsewhere.");
-  add(pipeline::ChoiceOption<RunOptions, LogLevel>("log-level", &RunOptions::log_level,
-                                                   {{"debug", LogLevel::kDebug},
-                                                    {"info", LogLevel::kInfo},
-                                                    {"warn", LogLevel::kWarn},
-                                                    {"error", LogLevel::kError},
-                                                    {"off", LogLevel::kOff}}),
-      "Least important kind of message to print on standard error.");
-  return table;
+  table.Add(pipeline::ChoiceOption<RunOptions, LogLevel>("log-level", &RunOptions::log_level,
+                                                         {{"debug", LogLevel::kDebug},
+                                                          {"info", LogLevel::kInfo},
+                                                          {"warn", LogLevel::kWarn},
+                                                          {"error", LogLevel::kError},
+                                                          {"off", LogLevel::kOff}}),
+            "Least important kind of message to print on standard error.");
+  return table.Take();
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 #ifndef RSSTAB_CLI_COMMANDS_ANALYZE_H_
 #define RSSTAB_CLI_COMMANDS_ANALYZE_H_
 
-#include "cli/invocation.h"
 #include "cli/command_context.h"
+#include "cli/invocation.h"
 #include "igf/base/result.h"
 
 namespace rsstab::cli {

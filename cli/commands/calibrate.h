@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "cli/invocation.h"
 #include "cli/command_context.h"
+#include "cli/invocation.h"
 #include "igf/base/result.h"
 #include "stabilizer/pipeline/calibrator.h"
 

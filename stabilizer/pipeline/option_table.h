@@ -42,6 +42,32 @@ struct OptionSpec {
 template <typename Options>
 using OptionTable = std::vector<OptionSpec<Options>>;
 
+// Fills a table heading by heading.
+template <typename Options>
+class OptionTableBuilder {
+ public:
+  // Heading and stage of what is added next.
+  void Group(std::string heading, OptionStage stage = OptionStage::kBoth) {
+    group_ = std::move(heading);
+    stage_ = stage;
+  }
+  void Add(OptionSpec<Options> spec) {
+    spec.group = group_;
+    spec.stage = stage_;
+    table_.push_back(std::move(spec));
+  }
+  void Add(OptionSpec<Options> spec, std::string help) {
+    spec.help = std::move(help);
+    Add(std::move(spec));
+  }
+  [[nodiscard]] OptionTable<Options> Take() { return std::move(table_); }
+
+ private:
+  std::string group_;
+  OptionStage stage_ = OptionStage::kBoth;
+  OptionTable<Options> table_;
+};
+
 // Number <-> text, independent of the locale. Parsing wants the whole text to be one finite number.
 [[nodiscard]] std::optional<double> ParseReal(const std::string& text);
 [[nodiscard]] std::optional<std::int64_t> ParseInteger(const std::string& text);
@@ -63,6 +89,7 @@ struct RealRange {
                                               const std::string& rule);
 
 // ---- Makers of the usual kinds. Text and range are filled in; help, group and stage by the caller
+// or the builder.
 
 // A number stored as `text * scale` (scale 0.001 stores a value given in ms as seconds).
 template <typename Options, typename Field>
@@ -131,9 +158,10 @@ OptionSpec<Options> SwitchOption(const std::string& name, bool Options::*field) 
 // Any text, a file name for example.
 template <typename Options>
 OptionSpec<Options> TextOption(const std::string& name, const std::string& value_name,
-                               std::string Options::*field) {
+                               std::string Options::*field, char short_name = '\0') {
   OptionSpec<Options> spec;
   spec.name = name;
+  spec.short_name = short_name;
   spec.value_name = value_name;
   spec.set = [field](Options& options, const std::string& text) -> Status {
     options.*field = text;
