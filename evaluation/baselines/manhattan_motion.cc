@@ -28,8 +28,12 @@ constexpr int kLeastPerDirection = 8;
 constexpr double kLeastInlierShare = 0.4;  // of the length: three directions catch 25% of anything
 constexpr double kLoss_px = 0.7;
 // One standard deviation of the motion, as displacement from top to bottom, in picture heights.
-constexpr double kRateSpread = 0.12;
-constexpr double kChangeSpread = 0.06;
+constexpr double kRateSpread = 0.05;
+constexpr double kChangeSpread = 0.02;
+// The segments of a picture are wrong together (a focal length that is not one width, facades that
+// are not quite at right angles), so that they count as so many at most. Otherwise hundreds of them
+// outvote the pull towards rest about what a picture hardly tells, its pitch above all.
+constexpr double kMostIndependent = 20.0;
 // Farther than this, in picture heights from top to bottom, no hand turns a camera in a readout.
 constexpr double kMostMotion = 0.25;
 // Pieces of one edge: ends this near, directions this alike.
@@ -173,9 +177,11 @@ bool Solve(const std::vector<Edge>& edges, const std::vector<std::pair<Edge, Edg
   }
   AddStraightness(joints, motion, problem);
   const double height_rad = camera.height / camera.fy;
+  const double pull =
+      std::sqrt(std::max(1.0, static_cast<double>(edges.size()) / kMostIndependent));
   problem.AddResidualBlock(
       new ceres::AutoDiffCostFunction<SmallMotionResidual, 6, 6>(new SmallMotionResidual{
-          1.0 / (kRateSpread * height_rad), 1.0 / (kChangeSpread * height_rad)}),
+          pull / (kRateSpread * height_rad), pull / (kChangeSpread * height_rad)}),
       nullptr, motion.data());
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;

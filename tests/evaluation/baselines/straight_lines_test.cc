@@ -18,6 +18,10 @@ using rsstab::testing::MeanDifference;
 constexpr int kWidth = 640;
 constexpr int kHeight = 480;
 
+// Segments count as twenty independent ones at most, however exact, so that the pull towards rest
+// leaves 40% of a motion.
+constexpr double kMostLeft = 0.45;
+
 Camera TestCamera() { return Camera::Pinhole(kWidth, kHeight, kWidth); }
 
 // A skewing, twisting and slightly accelerated turn: 9 px of displacement in the mean.
@@ -80,12 +84,11 @@ TEST(StraightLines, ExactSegmentsGiveTheMotion) {
       FitManhattanMotion(Recorded(RoomEdges(), Exact(TrueMotion()), 2), TestCamera(), 1);
   ASSERT_TRUE(found) << found.error().message;
   EXPECT_GT(found->inliers, 150);
-  // Short pieces leave some of it to the pull towards rest.
   const MotionField truth = ComputeReadoutField(TestCamera(), Exact(TrueMotion())).value();
   const MotionField field = ComputeReadoutField(TestCamera(), Exact(*found)).value();
   const MotionField none(kWidth, kHeight, truth.columns(), truth.rows());
-  EXPECT_LT(MeanDifference(field, truth), 0.2 * MeanDifference(none, truth));
-  EXPECT_GT(found->rate.y(), 0.04);  // and not the other way
+  EXPECT_LT(MeanDifference(field, truth), kMostLeft * MeanDifference(none, truth));
+  EXPECT_GT(found->rate.y(), 0.03);  // and not the other way
 }
 
 TEST(StraightLines, APictureOfARoomIsStraightened) {
@@ -112,7 +115,7 @@ TEST(StraightLines, APictureOfARoomIsStraightened) {
   ASSERT_TRUE(answer) << answer.error().message;
   const double untouched = MeanDifference(none, truth);
   ASSERT_GT(untouched, 6.0);
-  EXPECT_LT(MeanDifference(answer->field, truth), 0.3 * untouched);
+  EXPECT_LT(MeanDifference(answer->field, truth), kMostLeft * untouched);
 }
 
 TEST(StraightLines, PicturesWithoutSuchLinesAreRefused) {
