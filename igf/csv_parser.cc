@@ -155,11 +155,7 @@ Result<GyroRecording> ParseGyroCsv(std::string_view text, const GyroParseOptions
     columns->camera_from_sensor = *options.camera_from_sensor;
   }
   std::vector<std::string> notes;
-  Result<std::vector<GyroSample>> samples = ReadGyroRows(rows, *columns, &notes);
-  if (!samples) {
-    return Propagate(std::move(samples).error());
-  }
-  Result<GyroLog> log = GyroLog::Create(*std::move(samples), options.limits);
+  Result<GyroLog> log = ReadGyroRows(rows, *columns, options.limits, &notes);
   if (!log) {
     return Propagate(std::move(log).error());
   }

@@ -137,11 +137,7 @@ Result<GyroRecording> ParseGcsv(std::string_view text, const GyroParseOptions& o
     columns->camera_from_sensor = *axes;
   }
 
-  Result<std::vector<GyroSample>> samples = ReadGyroRows(rows, *columns, &notes);
-  if (!samples) {
-    return Propagate(std::move(samples).error());
-  }
-  Result<GyroLog> log = GyroLog::Create(*std::move(samples), options.limits);
+  Result<GyroLog> log = ReadGyroRows(rows, *columns, options.limits, &notes);
   if (!log) {
     return Propagate(std::move(log).error());
   }

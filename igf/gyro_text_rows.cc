@@ -76,8 +76,8 @@ std::optional<double> ParseNumber(std::string_view field) {
   return number;
 }
 
-Result<std::vector<GyroSample>> ReadGyroRows(TextRows& rows, const GyroColumns& columns,
-                                             std::vector<std::string>* notes) {
+Result<GyroLog> ReadGyroRows(TextRows& rows, const GyroColumns& columns,
+                             const GyroLogOptions& limits, std::vector<std::string>* notes) {
   const std::size_t last_column =
       std::max(columns.time, *std::max_element(columns.rate.begin(), columns.rate.end()));
   std::vector<GyroSample> samples;
@@ -121,7 +121,7 @@ Result<std::vector<GyroSample>> ReadGyroRows(TextRows& rows, const GyroColumns& 
     }
     samples.push_back(sample);
   }
-  return samples;
+  return GyroLog::Create(std::move(samples), limits);
 }
 
 std::string Quoted(std::string_view text) {

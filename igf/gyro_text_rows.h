@@ -49,12 +49,12 @@ struct GyroColumns {
   Eigen::Matrix3d camera_from_sensor = Eigen::Matrix3d::Identity();
 };
 
-// Reads the remaining rows. A last line that breaks off is left out, with a note.
+// The remaining rows as a log. A last line that breaks off is left out, with a note.
 // Errors: kCorruptData with the line: a field missing, not a number or not finite, time that
-// repeats or runs backwards.
-[[nodiscard]] Result<std::vector<GyroSample>> ReadGyroRows(TextRows& rows,
-                                                           const GyroColumns& columns,
-                                                           std::vector<std::string>* notes);
+// repeats or runs backwards; those of GyroLog::Create.
+[[nodiscard]] Result<GyroLog> ReadGyroRows(TextRows& rows, const GyroColumns& columns,
+                                           const GyroLogOptions& limits,
+                                           std::vector<std::string>* notes);
 
 // What of a piece of a file may appear in a message: printable, short, in quotes.
 [[nodiscard]] std::string Quoted(std::string_view text);

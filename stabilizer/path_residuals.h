@@ -35,6 +35,17 @@ template <typename T>
   return ApplyInverseUpdate<T>(theta_next, focal_ratio, in_next);
 }
 
+// Two residuals for every point: `difference(point)`, weighted, in pixels.
+template <typename T, typename Difference>
+void PointResiduals(const PathPoints& points, double weight, const Difference& difference,
+                    T* residual) {
+  for (std::size_t i = 0; i < kNumPathPoints; ++i) {
+    const Point2<T> r = difference(points[i]) * T(weight * kReferenceWidthPx);
+    residual[2 * i] = r.x();
+    residual[2 * i + 1] = r.y();
+  }
+}
+
 // |P(t) - C(t)|: how far the update moves the picture (zoom apart: that is what hides borders, and
 // has a price of its own); plus the reluctance to use anything but a turn.
 struct DataResidual {
@@ -50,12 +61,10 @@ struct DataResidual {
     std::array<T, kUpdateSize> unzoomed;
     std::copy(theta, theta + kUpdateSize, unzoomed.begin());
     unzoomed[kZoomIndex] = T(0.0);
-    for (std::size_t i = 0; i < kNumPathPoints; ++i) {
-      const Point2<T> moved = ApplyUpdate<T>(unzoomed.data(), focal_ratio, points[i].cast<T>());
-      const Point2<T> r = (moved - points[i].cast<T>()) * T(weight * kReferenceWidthPx);
-      residual[2 * i] = r.x();
-      residual[2 * i + 1] = r.y();
-    }
+    const auto moved = [&](const Eigen::Vector2d& q) -> Point2<T> {
+      return ApplyUpdate<T>(unzoomed.data(), focal_ratio, q.cast<T>()) - q.cast<T>();
+    };
+    PointResiduals(points, weight, moved, residual);
     for (std::size_t k = 0; k < reluctance.size(); ++k) {
       residual[2 * kNumPathPoints + k] = reluctance[k] * theta[k];
     }
@@ -76,13 +85,11 @@ struct AccelerationResidual {
 
   template <typename T>
   bool operator()(const T* t0, const T* t1, const T* t2, T* residual) const {
-    for (std::size_t i = 0; i < kNumPathPoints; ++i) {
-      const Point2<T> r = (OutputMotion<T>(t1, t2, f1, focal_ratio, points[i]) -
-                           OutputMotion<T>(t0, t1, f0, focal_ratio, points[i])) *
-                          T(weight * kReferenceWidthPx);
-      residual[2 * i] = r.x();
-      residual[2 * i + 1] = r.y();
-    }
+    const auto change = [&](const Eigen::Vector2d& q) -> Point2<T> {
+      return OutputMotion<T>(t1, t2, f1, focal_ratio, q) -
+             OutputMotion<T>(t0, t1, f0, focal_ratio, q);
+    };
+    PointResiduals(points, weight, change, residual);
     return true;
   }
 };
@@ -100,14 +107,12 @@ struct JerkResidual {
 
   template <typename T>
   bool operator()(const T* t0, const T* t1, const T* t2, const T* t3, T* residual) const {
-    for (std::size_t i = 0; i < kNumPathPoints; ++i) {
-      const Point2<T> r = (OutputMotion<T>(t2, t3, f2, focal_ratio, points[i]) -
-                           OutputMotion<T>(t1, t2, f1, focal_ratio, points[i]) * T(2.0) +
-                           OutputMotion<T>(t0, t1, f0, focal_ratio, points[i])) *
-                          T(weight * kReferenceWidthPx);
-      residual[2 * i] = r.x();
-      residual[2 * i + 1] = r.y();
-    }
+    const auto change = [&](const Eigen::Vector2d& q) -> Point2<T> {
+      return OutputMotion<T>(t2, t3, f2, focal_ratio, q) -
+             OutputMotion<T>(t1, t2, f1, focal_ratio, q) * T(2.0) +
+             OutputMotion<T>(t0, t1, f0, focal_ratio, q);
+    };
+    PointResiduals(points, weight, change, residual);
     return true;
   }
 };
@@ -123,13 +128,10 @@ struct VelocityResidual {
 
   template <typename T>
   bool operator()(const T* t0, const T* t1, T* residual) const {
-    for (std::size_t i = 0; i < kNumPathPoints; ++i) {
-      const Point2<T> r =
-          (OutputMotion<T>(t0, t1, f0, focal_ratio, points[i]) - points[i].cast<T>()) *
-          T(weight * kReferenceWidthPx);
-      residual[2 * i] = r.x();
-      residual[2 * i + 1] = r.y();
-    }
+    const auto motion = [&](const Eigen::Vector2d& q) -> Point2<T> {
+      return OutputMotion<T>(t0, t1, f0, focal_ratio, q) - q.cast<T>();
+    };
+    PointResiduals(points, weight, motion, residual);
     return true;
   }
 };

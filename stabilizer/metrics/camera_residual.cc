@@ -15,6 +15,7 @@
 #include "stabilizer/metrics/frame_alignment_detail.h"
 #include "stabilizer/metrics/luma_detail.h"
 #include "stabilizer/metrics/metric_residuals.h"
+#include "stabilizer/metrics/metric_solver_detail.h"
 #include "stabilizer/metrics/path_metrics.h"
 #include "stabilizer/metrics/robust_homography.h"
 
@@ -69,14 +70,7 @@ bool Solve(std::span<const RotationZoomResidual> matches, std::span<const std::u
                                loss, parameters.data());
     }
   }
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-  options.max_num_iterations = kMostIterations;
-  options.logging_type = ceres::SILENT;
-  options.num_threads = 1;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  return summary.IsSolutionUsable();
+  return SolveSmall(problem, kMostIterations);
 }
 
 // Marks what is no gross outlier; returns how many.

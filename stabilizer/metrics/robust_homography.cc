@@ -13,6 +13,7 @@
 
 #include "igf/base/homography.h"
 #include "stabilizer/metrics/metric_residuals.h"
+#include "stabilizer/metrics/metric_solver_detail.h"
 
 namespace rsstab::stabilizer {
 namespace {
@@ -67,14 +68,7 @@ std::optional<Eigen::Matrix3d> Refine(std::span<const PointMatch> matches,
         new ceres::AutoDiffCostFunction<HomographyResidual, 2, 8>(new HomographyResidual(residual)),
         loss, parameters.data());
   }
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-  options.max_num_iterations = kMostIterations;
-  options.logging_type = ceres::SILENT;
-  options.num_threads = 1;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  if (!summary.IsSolutionUsable()) {
+  if (!SolveSmall(problem, kMostIterations)) {
     return std::nullopt;
   }
   h << parameters[0], parameters[1], parameters[2], parameters[3], parameters[4], parameters[5],
