@@ -65,6 +65,16 @@ class EvaluatePicturesTest : public ::testing::Test {
   EvaluateOptions evaluate_;
 };
 
+// Everything but what depends on the machine's mood.
+std::string CsvWithoutTimes(PictureReport report) {
+  for (evaluation::PictureRecord& record : report.records) {
+    for (evaluation::MethodFigures& method : record.methods) {
+      method.ms = 0.0;
+    }
+  }
+  return FormatCsv(report);
+}
+
 TEST_F(EvaluatePicturesTest, TheGyroLogExplainsASimulatedSet) {
   // Labels and logs come from one motion, sampled at 1 kHz; 0.02 px is what interpolation loses.
   constexpr double kExact_px = 0.02;
@@ -158,11 +168,7 @@ TEST_F(EvaluatePicturesTest, AStoppedRunGoesOnWhereItWas) {
   ASSERT_TRUE(resumed) << resumed.error().message;
   EXPECT_EQ(done_again, 4);
   ASSERT_EQ(resumed->records.size(), 6U);
-  for (std::size_t i = 0; i < 6; ++i) {
-    EXPECT_EQ(resumed->records[i].name, whole->records[i].name);
-    EXPECT_EQ(resumed->records[i].methods[1].epe_px, whole->records[i].methods[1].epe_px);
-    EXPECT_EQ(resumed->records[i].methods[0].psnr_db, whole->records[i].methods[0].psnr_db);
-  }
+  EXPECT_EQ(CsvWithoutTimes(*resumed), CsvWithoutTimes(*whole));
   EXPECT_FALSE(std::filesystem::exists(state));
 
   // Other settings do not go on from it.
