@@ -111,6 +111,12 @@ std::string DescribeShutter(const stabilizer::ClipCalibration& calibration) {
   return fmt::format("readout {:.1f} ms (given)", readout.value * 1e3);
 }
 
+// Whether the tracks show a camera that turns and nothing else.
+bool OnlyTurns(const stabilizer::ClipCalibration& calibration) {
+  return calibration.num_windows > 0 &&
+         calibration.parallax_px < stabilizer::kMaxTurningParallax_px;
+}
+
 // One rotation spline over the clip.
 Result<RsSelection> SelectFused(const StabilizeOptions& options, const ClipGeometry& clip,
                                 CameraKnowledge known,
@@ -125,8 +131,7 @@ Result<RsSelection> SelectFused(const StabilizeOptions& options, const ClipGeome
   }
   known.camera.readout_s = readout_s;
   const std::string shutter = DescribeShutter(calibration);
-  const bool only_turns =
-      calibration.num_windows > 0 && calibration.parallax_px < stabilizer::kMaxTurningParallax_px;
+  const bool only_turns = OnlyTurns(calibration);
   if (readout_s == 0.0 && !only_turns) {
     RsSelection selection = WithoutSource(known, "left alone: " + shutter);
     selection.calibration = calibration;
@@ -206,6 +211,9 @@ Result<RsSelection> SelectRsSource(const StabilizeOptions& options, const ClipGe
   const bool may_use_gyro = options.rs == RsChoice::kAuto || options.rs == RsChoice::kGyro;
   if (may_use_gyro && inputs.gyro) {
     auto selection = SelectGyro(options, known, inputs, evidence.tracks);
+    if (selection && evidence.calibration && selection->calibration->focal.trusted) {
+      selection->only_turns = OnlyTurns(*evidence.calibration);
+    }
     // A log with holes leaves frames as they are; tracks that tell the shutter do not.
     const bool has_better =
         selection && selection->covered_share < kMinCoveredShare && evidence.calibration &&

@@ -106,5 +106,23 @@ TEST_F(GyroSelection, AutoPrefersTracksToALogWithHoles) {
   EXPECT_EQ(source_of(RsChoice::kGyro, told), "gyro");
 }
 
+// Where tracks show that the camera only turns, nothing follows an object that passes by.
+TEST_F(GyroSelection, WhetherTheCameraOnlyTurnsIsWhatTheTracksSay) {
+  stabilizer::ClipCalibration tracks_say;
+  tracks_say.num_windows = 3;
+  StabilizeOptions options;
+  options.rs = RsChoice::kGyro;
+  const auto only_turns = [&](double parallax_px) {
+    tracks_say.parallax_px = parallax_px;
+    return SelectRsSource(options, {640, 360, 30.0}, inputs_, {tracks_, tracks_say, {}},
+                          SilentLogger())
+        ->only_turns;
+  };
+  EXPECT_TRUE(only_turns(0.5 * stabilizer::kMaxTurningParallax_px));
+  EXPECT_FALSE(only_turns(2.0 * stabilizer::kMaxTurningParallax_px));
+  tracks_say.num_windows = 0;
+  EXPECT_FALSE(only_turns(0.0)) << "nothing was seen";
+}
+
 }  // namespace
 }  // namespace rsstab::pipeline
