@@ -2,6 +2,7 @@
 #include "cli/commands/compare.h"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <filesystem>
 #include <functional>
@@ -69,6 +70,19 @@ Result<Source> OpenSource(const std::string& path, int threads, const Logger& lo
     return Propagate(reader.error());
   }
   return Source{std::move(*reader), std::nullopt, 0};
+}
+
+// Whether a clip shows the same view as the twin, of whatever size.
+Status CheckShape(const media::VideoInfo& clip, const media::VideoInfo& twin) {
+  constexpr double kRounding = 0.01;  // of sides that were scaled to whole pixels
+  const double aspect = static_cast<double>(clip.width) / clip.height;
+  const double twin_aspect = static_cast<double>(twin.width) / twin.height;
+  if (std::abs(aspect / twin_aspect - 1.0) > kRounding) {
+    return Fail(ErrorCode::kInvalidArgument,
+                "--truth: {} is {} x {}, {} is {} x {}: this is the truth of another clip.",
+                twin.path, twin.width, twin.height, clip.path, clip.width, clip.height);
+  }
+  return {};
 }
 
 // The twin, and what is measured against it.
@@ -146,6 +160,22 @@ CompareReport::Clip Describe(const media::VideoInfo& info, const stabilizer::Cli
   return clip;
 }
 
+// Says why figures against the truth are doubtful or missing. Of the twin at most one frame more
+// than the clips have was read.
+void WarnOfTruth(const CompareOptions& options, const CompareReport& report, std::int64_t frames,
+                 std::int64_t twin_frames, const Logger& logger) {
+  if (frames != twin_frames) {
+    logger->warn("compare: the truth {} has {} frames than {}; frames were paired by their number",
+                 options.truth, twin_frames < frames ? "fewer" : "more", options.input);
+  }
+  for (const CompareReport::Clip* clip : {&report.input, &report.output}) {
+    if (clip->truth && clip->truth->frames > 0 && !clip->truth->camera_residual) {
+      logger->warn("compare: no frame of {} could be brought onto the truth {}; is it this clip's?",
+                   clip->path, options.truth);
+    }
+  }
+}
+
 }  // namespace
 
 Result<CompareReport> CompareClips(const CompareOptions& options, const Logger& logger,
@@ -170,6 +200,14 @@ Result<CompareReport> CompareClips(const CompareOptions& options, const Logger& 
       return Propagate(opened.error());
     }
     truth.emplace(std::move(*opened));
+    for (const Source* clip : {&*input, output ? &*output : nullptr}) {
+      if (clip == nullptr) {
+        continue;
+      }
+      if (Status shape = CheckShape(clip->reader->info(), truth->twin.reader->info()); !shape) {
+        return Propagate(shape.error());
+      }
+    }
   }
   stabilizer::ClipMeter input_meter;
   stabilizer::ClipMeter output_meter;
@@ -248,6 +286,9 @@ Result<CompareReport> CompareClips(const CompareOptions& options, const Logger& 
   if (output && input->frames != output->frames) {
     logger->warn("compare: {} has {} frames, {} has {}; frames were paired by their number",
                  options.input, input->frames, options.output, output->frames);
+  }
+  if (truth) {
+    WarnOfTruth(options, report, input->frames, truth->twin.frames, logger);
   }
   return report;
 }

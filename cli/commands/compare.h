@@ -63,7 +63,8 @@ using CompareObserver = std::function<Status(const ComparedFrames& frames)>;
 // Measures both clips in one go. Frames belong together by their number; where one clip is longer,
 // its further frames count for itself only, with a warning. What `scope` leaves out keeps its
 // default. Memory does not grow with the clip but for about 100 bytes a frame. Errors: those of the
-// reader, naming the clip; kNotFound for a truth without its files; kCancelled.
+// reader, naming the clip; kNotFound for a truth without its files, kInvalidArgument for one of
+// another shape; kCancelled.
 [[nodiscard]] Result<CompareReport> CompareClips(const CompareOptions& options,
                                                  const Logger& logger,
                                                  const CompareProgress& progress = {},

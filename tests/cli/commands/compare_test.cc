@@ -3,7 +3,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
 
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -87,6 +90,50 @@ TEST_F(CompareClipsTest, TruthMayBeNamedByAnyOfItsFiles) {
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().code, ErrorCode::kNotFound);
   EXPECT_THAT(missing.error().message, HasSubstr("/nonexistent/gs.mp4"));
+}
+
+// The truth of another clip with the same motion kind, of `width` x `height` and `frames`.
+std::string OtherTruth(const rsstab::testing::TemporaryFolder& folder, int width, int height,
+                       int frames) {
+  SimulateOptions options;
+  options.output = (folder / "other").string();
+  options.overwrite = true;
+  options.motion = igf::MotionPreset::kVibration;
+  options.seed = 9;
+  options.width = width;
+  options.height = height;
+  options.duration_s = frames / options.fps;
+  const Status status = RunSimulate(options, SilentLogger());
+  EXPECT_TRUE(status) << status.error().message;
+  return options.output;
+}
+
+TEST_F(CompareClipsTest, TheTruthOfAnotherShapeIsRefused) {
+  const rsstab::testing::TemporaryFolder folder;
+  CompareOptions options = RsAgainstTwin();
+  options.truth = OtherTruth(folder, 270, 480, 3);
+  const auto report = CompareClips(options, SilentLogger());
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().code, ErrorCode::kInvalidArgument);
+  EXPECT_THAT(report.error().message, HasSubstr("270 x 480"));
+  EXPECT_THAT(report.error().message, HasSubstr("480 x 270"));
+}
+
+TEST_F(CompareClipsTest, TheTruthOfAnotherClipIsDoubtedAndNothingElsePrinted) {
+  const rsstab::testing::TemporaryFolder folder;
+  CompareOptions options = RsAgainstTwin();
+  for (const int frames : {5, kFrames + 1}) {
+    options.truth = OtherTruth(folder, 480, 270, frames);
+    std::ostringstream lines;
+    const Logger logger = std::make_shared<spdlog::logger>(
+        "test", std::make_shared<spdlog::sinks::ostream_sink_mt>(lines));
+    ::testing::internal::CaptureStderr();
+    const auto report = CompareClips(options, logger);
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+    ASSERT_TRUE(report) << report.error().message;
+    EXPECT_THAT(lines.str(),
+                HasSubstr(frames < kFrames ? "fewer frames than" : "more frames than"));
+  }
 }
 
 TEST_F(CompareClipsTest, JsonHoldsEveryFigure) {
