@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "cli/commands/method_list.h"
@@ -31,21 +32,48 @@ using evaluation::SingleImageMethod;
 using evaluation::StraightLinesMethod;
 using rsdiff::SingleImageEstimator;
 
-const char* const kNone = "none";
-const char* const kGyro = "gyro";
-const char* const kGyroOneStep = "gyro-onestep";
-const char* const kLines = "lines";
-const char* const kHomographyMixture = "homography-mixture";
-const char* const kRotationSpline = "rotation-spline";
-const char* const kRegression = "regression";
-const char* const kSample = "sample";
-const char* const kMean = "mean";
-const char* const kDiffusion = "diffusion";
-const char* const kReference = "reference";
+constexpr std::string_view kNone = "none";
+constexpr std::string_view kGyro = "gyro";
+constexpr std::string_view kGyroOneStep = "gyro-onestep";
+constexpr std::string_view kLines = "lines";
+constexpr std::string_view kHomographyMixture = "homography-mixture";
+constexpr std::string_view kRotationSpline = "rotation-spline";
+constexpr std::string_view kRegression = "regression";
+constexpr std::string_view kSample = "sample";
+constexpr std::string_view kMean = "mean";
+constexpr std::string_view kDiffusion = "diffusion";
+constexpr std::string_view kReference = "reference";
+
+// Every method of pictures: help and messages are made from this table.
+struct PictureMethod {
+  std::string_view name;
+  bool is_network;
+  const char* what;
+};
+constexpr std::array<PictureMethod, 11> kPictureMethods = {
+    {{kNone, false, "the picture as it is; always there"},
+     {kGyro, false, "the exact motion of a gyro log"},
+     {kGyroOneStep, false, "the same by row bands, as in gyro-onestep@bands=60"},
+     {kDiffusion, true,
+      "mean of the model's samples; settings may follow, as in diffusion@steps=1,samples=8"},
+     {kMean, true, "another word for diffusion"},
+     {kSample, true, "one of its samples"},
+     {kReference, true, "the network that --reference-model names"},
+     {kRegression, true, "one sample of the network that --regression-model names"},
+     {kLines, false, "straight edges of the picture alone"},
+     {kHomographyMixture, false, "where there is a frame before or after"},
+     {kRotationSpline, false, "the same"}}};
+
+const PictureMethod* FindMethod(const std::string& name) {
+  const auto* const found =
+      std::find_if(kPictureMethods.begin(), kPictureMethods.end(),
+                   [&](const PictureMethod& method) { return method.name == name; });
+  return found == kPictureMethods.end() ? nullptr : found;
+}
 
 bool IsNetwork(const std::string& name) {
-  return name == kRegression || name == kSample || name == kMean || name == kDiffusion ||
-         name == kReference;
+  const PictureMethod* const method = FindMethod(name);
+  return method != nullptr && method->is_network;
 }
 
 // What only the user can have weights of, and named none.
@@ -130,6 +158,34 @@ Result<std::unique_ptr<evaluation::MotionMethod>> MakeNetwork(const EvaluateOpti
                                              changed->know_focal);
 }
 
+// Row bands of gyro-onestep.
+std::optional<int> BandsOf(const MethodSpec& method) {
+  const auto bands = method.settings.find("bands");
+  if (bands == method.settings.end()) {
+    return method.settings.empty() ? std::optional<int>(evaluation::kUsualBands) : std::nullopt;
+  }
+  const auto number = pipeline::ParseInteger(bands->second);
+  const bool fits = method.settings.size() == 1 && number && *number >= 1 && *number <= 65535;
+  return fits ? std::optional<int>(static_cast<int>(*number)) : std::nullopt;
+}
+
+// Whether there is such a method, with such settings.
+Status CheckMethod(const EvaluateOptions& options, const MethodSpec& method) {
+  if (FindMethod(method.name) == nullptr) {
+    return Fail(ErrorCode::kInvalidArgument, "--methods: there is no method '{}'; choose from {}.",
+                method.name, PictureMethodNames());
+  }
+  if (method.name == kGyroOneStep) {
+    return BandsOf(method) ? Status()
+                           : Fail(ErrorCode::kInvalidArgument,
+                                  "--methods: {}: its one setting is bands, a whole number from 1.",
+                                  method.text);
+  }
+  const auto changed = WithSettings(options, method);
+  return changed ? Status() : Status(Propagate(changed.error()));
+}
+
+// Of a method that CheckMethod lets pass, but for none.
 Result<std::unique_ptr<evaluation::MotionMethod>> MakeMethod(const EvaluateOptions& options,
                                                              const MethodSpec& method,
                                                              Estimators& estimators) {
@@ -137,19 +193,7 @@ Result<std::unique_ptr<evaluation::MotionMethod>> MakeMethod(const EvaluateOptio
     return MakeNetwork(options, method, estimators);
   }
   if (method.name == kGyroOneStep) {
-    const auto bands = method.settings.find("bands");
-    const auto number = bands == method.settings.end()
-                            ? std::optional<std::int64_t>(evaluation::kUsualBands)
-                            : pipeline::ParseInteger(bands->second);
-    if (method.settings.size() > (bands == method.settings.end() ? 0U : 1U) || !number ||
-        *number < 1 || *number > 65535) {
-      return Fail(ErrorCode::kInvalidArgument,
-                  "--methods: {}: its one setting is bands, a whole number from 1.", method.text);
-    }
-    return std::make_unique<GyroMethod>(method.text, static_cast<int>(*number));
-  }
-  if (const auto checked = WithSettings(options, method); !checked) {
-    return Propagate(checked.error());
+    return std::make_unique<GyroMethod>(method.text, BandsOf(method).value());
   }
   if (method.name == kGyro) {
     return std::make_unique<GyroMethod>(method.text, 0);
@@ -160,11 +204,7 @@ Result<std::unique_ptr<evaluation::MotionMethod>> MakeMethod(const EvaluateOptio
   if (method.name == kHomographyMixture) {
     return std::make_unique<HomographyMixtureMethod>();
   }
-  if (method.name == kRotationSpline) {
-    return std::make_unique<RotationSplineMethod>();
-  }
-  return Fail(ErrorCode::kInvalidArgument, "--methods: there is no method '{}'; choose from {}.",
-              method.name, PictureMethodNames());
+  return std::make_unique<RotationSplineMethod>();
 }
 
 Result<MethodSet> MakeMethods(const EvaluateOptions& options,
@@ -188,13 +228,14 @@ Result<MethodSet> MakeMethods(const EvaluateOptions& options,
   if (!estimator) {
     return Propagate(estimator.error());
   }
-  const auto sampler = [&](const char* name, int samples) {
+  const auto sampler = [&](std::string_view name, int samples) {
     rsdiff::SamplingOptions sampling;
     sampling.samples = samples;
     sampling.steps = options.steps;
     sampling.guidance = options.guidance.value_or(sampling.guidance);
     sampling.eta = options.eta.value_or(sampling.eta);
-    return std::make_unique<SingleImageMethod>(name, *estimator, sampling, options.know_focal);
+    return std::make_unique<SingleImageMethod>(std::string(name), *estimator, sampling,
+                                               options.know_focal);
   };
   if (options.calibration_samples > 0) {
     set.sampler = sampler("calibration", options.calibration_samples);
@@ -206,9 +247,46 @@ Result<MethodSet> MakeMethods(const EvaluateOptions& options,
 }  // namespace
 
 std::string PictureMethodNames() {
-  return "none, gyro, gyro-onestep, diffusion, sample, mean, reference, regression, lines, "
-         "homography-mixture, "
-         "rotation-spline";
+  std::string names;
+  for (const PictureMethod& method : kPictureMethods) {
+    names += (names.empty() ? "" : ", ") + std::string(method.name);
+  }
+  return names;
+}
+
+std::string PictureMethodHelp() {
+  std::string help;
+  for (const PictureMethod& method : kPictureMethods) {
+    help += fmt::format("{}{} ({})", help.empty() ? "" : ", ", method.name, method.what);
+  }
+  return help;
+}
+
+std::string MethodsAskedFor(const EvaluateOptions& options) {
+  const bool is_data_set = options.protocol == EvaluationProtocol::kPairs ||
+                           options.protocol == EvaluationProtocol::kRsReal;
+  return is_data_set && options.methods == EvaluateOptions().methods ? kDatasetMethods
+                                                                     : options.methods;
+}
+
+Status CheckPictureMethods(const EvaluateOptions& options) {
+  if (options.calibration_samples > 0 &&
+      options.calibration_samples < evaluation::kLeastCoverageSamples) {
+    return Fail(ErrorCode::kInvalidArgument,
+                "--calibration-samples: the spread of {} samples says too little; give at least "
+                "{}, or 0 to leave this out.",
+                options.calibration_samples, evaluation::kLeastCoverageSamples);
+  }
+  const auto wanted = ParseMethodList(options.methods);
+  if (!wanted) {
+    return Propagate(wanted.error());
+  }
+  for (const MethodSpec& method : *wanted) {
+    if (Status status = CheckMethod(options, method); !status) {
+      return status;
+    }
+  }
+  return {};
 }
 
 std::vector<std::string> MethodsWithoutWeights(const EvaluateOptions& options) {
@@ -226,12 +304,8 @@ std::vector<std::string> MethodsWithoutWeights(const EvaluateOptions& options) {
 }
 
 Result<MethodFactory> MakeMethodFactory(const EvaluateOptions& options) {
-  if (options.calibration_samples > 0 &&
-      options.calibration_samples < evaluation::kLeastCoverageSamples) {
-    return Fail(ErrorCode::kInvalidArgument,
-                "--calibration-samples: the spread of {} samples says too little; give at least "
-                "{}, or 0 to leave this out.",
-                options.calibration_samples, evaluation::kLeastCoverageSamples);
+  if (Status status = CheckPictureMethods(options); !status) {
+    return Propagate(status.error());
   }
   auto wanted = ParseMethodList(options.methods);
   if (!wanted) {

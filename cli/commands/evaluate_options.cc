@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/commands/evaluate_options.h"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <limits>
 
+#include "cli/commands/clip_method.h"
+#include "cli/commands/evaluate_methods.h"
 #include "stabilizer/pipeline/shared_options.h"
 
 namespace rsstab::cli {
@@ -116,16 +120,11 @@ OptionTable<Options> BuildTable() {
   table.Group("Methods");
   table.Add(
       TextOption<Options>("methods", "LIST", &Options::methods),
-      "Which to compare, separated by commas: none (the picture as it is; always there); sample "
-      "and mean of the model's samples, diffusion (another word for mean; settings may follow, as "
-      "in "
-      "diffusion@steps=1,samples=8), reference and regression where their models are named; gyro "
-      "and gyro-onestep[@bands=60] where pictures have gyro logs; the baselines homography-mixture "
-      "and "
-      "rotation-spline where there is a frame before or after. Data sets are given to all of them "
-      "unless told otherwise. Of clips: input, any word of "
-      "the main command's --rs, vidstab and deshake (FFmpeg's, where an ffmpeg is installed), all "
-      "of them unless given; main options may follow, as in off@smoothness=2.");
+      fmt::format("Which to compare, separated by commas. Of pictures: {}. Data sets are given "
+                  "all but mean, sample and regression unless told otherwise. Of clips: {} (the "
+                  "last two are FFmpeg's, where an ffmpeg is installed), all of them unless given; "
+                  "main options may follow, as in off@smoothness=2.",
+                  PictureMethodHelp(), fmt::join(ClipMethodNames(), ", ")));
   table.Add(
       TextOption<Options>("model", "FILE", &Options::model),
       "Model file, its folder, or the name of an installed model; the default model unless given.");
@@ -155,8 +154,7 @@ OptionTable<Options> BuildTable() {
             "Write the table's figures as JSON.");
   table.Add(TextOption<Options>("report", "FILE", &Options::report),
             "Write an HTML page, all in one file, with tables, charts and some of the pictures.");
-  table.Add(SwitchOption<Options>("overwrite", &Options::overwrite),
-            "Replace the page if it exists.");
+  table.Add(SwitchOption<Options>("overwrite", &Options::overwrite), "Replace files that exist.");
   table.Add(
       TextOption<Options>("state", "FILE", &Options::state),
       "rs-real, pairs: keep what is done in FILE, and go on from it when the same is asked again "

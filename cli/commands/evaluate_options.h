@@ -61,7 +61,7 @@ struct EvaluateOptions {
   std::string csv;         // file for one line per picture and method
   std::string json;        // file for everything in the table
   std::string report;      // file for an HTML page
-  bool overwrite = false;  // the page may replace a file
+  bool overwrite = false;  // these may replace files
   std::string state;       // file that a stopped run goes on from; beside csv or json unless given
 };
 
