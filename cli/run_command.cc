@@ -26,21 +26,43 @@
 namespace rsstab::cli {
 namespace {
 
+// The one pass of a command, which begins with its first frame or picture.
+class OnePass {
+ public:
+  OnePass(const CommandContext& context, const char* name, const char* unit)
+      : reporter_(*context.reporter), name_(name), unit_(unit) {}
+
+  // False once the user wants it to stop.
+  bool Update(std::int64_t done, std::int64_t frames) {
+    if (!begun_) {
+      reporter_.BeginPass(1, 1, name_, frames, unit_);
+      begun_ = true;
+    }
+    reporter_.Update(done);
+    return !CancelRequested();
+  }
+  void End() {
+    if (begun_) {
+      reporter_.EndPass();
+    }
+  }
+
+ private:
+  ProgressReporter& reporter_;
+  const char* name_;
+  const char* unit_;
+  bool begun_ = false;
+};
+
 // Runs `job`, which counts its frames or pictures, as the one pass of a command.
 template <typename Job>
 Status RunAsPass(const CommandContext& context, const char* name, const char* unit,
                  const Job& job) {
-  bool begun = false;
-  const Status status = job([&](std::int64_t done, std::int64_t frames) {
-    if (!begun) {
-      context.reporter->BeginPass(1, 1, name, frames, unit);
-      begun = true;
-    }
-    context.reporter->Update(done);
-    return !CancelRequested();
-  });
-  if (status && begun) {
-    context.reporter->EndPass();
+  OnePass pass(context, name, unit);
+  const Status status =
+      job([&pass](std::int64_t done, std::int64_t frames) { return pass.Update(done, frames); });
+  if (status) {
+    pass.End();
   }
   return status;
 }
@@ -74,14 +96,15 @@ Status Compare(const Invocation& invocation, const CommandContext& context) {
 }
 
 Status Evaluate(const Invocation& invocation, const CommandContext& context) {
-  std::ostringstream report;
   const bool of_clips = !invocation.evaluate.clips.empty();
-  const Status status =
-      RunAsPass(context, "evaluate", of_clips ? "runs" : "pictures",
-                [&](const evaluation::EvaluationProgress& progress) {
-                  return RunEvaluate(invocation.evaluate, context.logger, report, progress);
-                });
-  return status ? Print(report.str()) : status;
+  OnePass pass(context, "evaluate", of_clips ? "runs" : "pictures");
+  return RunEvaluate(
+      invocation.evaluate, context.logger,
+      [&](const std::string& table) {
+        pass.End();
+        return Print(table);
+      },
+      [&](std::int64_t done, std::int64_t items) { return pass.Update(done, items); });
 }
 
 Status Dispatch(const Invocation& invocation, const CommandContext& context) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/commands/evaluate.h"
 
-#include <filesystem>
+#include <array>
 #include <functional>
 #include <opencv2/core/utility.hpp>
 #include <optional>
-#include <system_error>
+#include <utility>
 
 #include "cli/commands/evaluate_clips.h"
 #include "cli/commands/evaluate_methods.h"
@@ -15,22 +15,41 @@
 #include "cli/pages/report_file.h"
 #include "cli/stage_times.h"
 #include "igf/base/parallel_for.h"
-#include "igf/base/whole_file.h"
 
 namespace rsstab::cli {
 namespace {
 
-// A long run should not end at a folder that was never there.
-Status CheckOutputFolders(const EvaluateOptions& options) {
-  for (const std::string& file : {options.csv, options.json, options.state}) {
-    const std::filesystem::path folder = std::filesystem::path(file).parent_path();
-    std::error_code error;
-    if (!folder.empty() && !std::filesystem::is_directory(folder, error)) {
-      return Fail(ErrorCode::kNotFound, "{}: there is no folder {} to write it to.", file,
-                  folder.string());
+// What a run writes beside its table, opened before it begins: a long run should not end at a name
+// that cannot be written.
+struct Outputs {
+  std::optional<ReportFile> csv;
+  std::optional<ReportFile> json;
+  std::optional<ReportFile> page;
+};
+
+Result<Outputs> OpenOutputs(const EvaluateOptions& options) {
+  Outputs outputs;
+  const std::array<std::pair<std::optional<ReportFile>*, std::string>, 3> files = {
+      {{&outputs.csv, options.csv},
+       {&outputs.json, options.json},
+       {&outputs.page, options.report}}};
+  for (const auto& [file, name] : files) {
+    if (name.empty()) {
+      continue;
     }
+    std::vector<std::string> others = {options.state};
+    for (const auto& [other_file, other_name] : files) {
+      if (other_file != file) {
+        others.push_back(other_name);
+      }
+    }
+    auto opened = ReportFile::Open(name, options.overwrite, others);
+    if (!opened) {
+      return Propagate(opened.error());
+    }
+    file->emplace(std::move(*opened));
   }
-  return {};
+  return outputs;
 }
 
 // Makes the page of a report, given how long its figures took.
@@ -38,19 +57,15 @@ template <typename Report>
 using PageMaker =
     std::function<Result<std::string>(const Report& report, const std::vector<StageTime>& stages)>;
 
-// Lets `evaluate` make the report, and writes it: table to `out`, the other forms to their files.
+// Lets `evaluate` make the report, and writes it: first the table to `out`, then the other forms to
+// their files. One that fails takes no other with it.
 template <typename Report>
-Status WriteReport(const EvaluateOptions& options, std::ostream& out,
-                   const std::function<Result<Report>()>& evaluate,
+Status WriteReport(const EvaluateOptions& options, const EvaluationOutput& out,
+                   const Logger& logger, const std::function<Result<Report>()>& evaluate,
                    const PageMaker<Report>& make_page) {
-  std::optional<ReportFile> file;
-  if (!options.report.empty()) {
-    auto opened = ReportFile::Open(options.report, options.overwrite,
-                                   {options.csv, options.json, options.state});
-    if (!opened) {
-      return Propagate(opened.error());
-    }
-    file.emplace(std::move(*opened));
+  auto outputs = OpenOutputs(options);
+  if (!outputs) {
+    return Propagate(outputs.error());
   }
   StageTimes times;
   const Result<Report> made = times.Measure("Evaluate", evaluate);
@@ -58,37 +73,36 @@ Status WriteReport(const EvaluateOptions& options, std::ostream& out,
     return Propagate(made.error());
   }
   const Report& report = *made;
-  if (file) {
-    const auto page = make_page(report, times.stages());
-    if (!page) {
-      return Propagate(page.error(), options.report);
+  Status result = out(FormatText(report));
+  const auto write = [&](std::optional<ReportFile>& file, const std::string& name,
+                         const Result<std::string>& content) {
+    const Status written =
+        content ? file->Write(*content) : Status(Propagate(content.error(), name));
+    if (!written && !result) {
+      logger->error("evaluate: {}", written.error().message);
+    } else if (!written) {
+      result = written;
     }
-    if (Status written = file->Write(*page); !written) {
-      return written;
-    }
+  };
+  if (outputs->csv) {
+    write(outputs->csv, options.csv, FormatCsv(report));
   }
-  out << FormatText(report);
-  if (!options.csv.empty()) {
-    if (Status status = WriteWholeFile(options.csv, FormatCsv(report)); !status) {
-      return status;
-    }
+  if (outputs->json) {
+    write(outputs->json, options.json, FormatJson(report));
   }
-  if (!options.json.empty()) {
-    return WriteWholeFile(options.json, FormatJson(report));
+  if (outputs->page) {
+    write(outputs->page, options.report, make_page(report, times.stages()));
   }
-  return {};
+  return result;
 }
 
 }  // namespace
 
-Status RunEvaluate(const EvaluateOptions& options, const Logger& logger, std::ostream& out,
-                   const evaluation::EvaluationProgress& progress) {
-  if (Status status = CheckOutputFolders(options); !status) {
-    return status;
-  }
+Status RunEvaluate(const EvaluateOptions& options, const Logger& logger,
+                   const EvaluationOutput& out, const evaluation::EvaluationProgress& progress) {
   if (options.protocol == EvaluationProtocol::kClips || !options.clips.empty()) {
     return WriteReport<ClipsReport>(
-        options, out, [&] { return EvaluateClips(options, logger, progress); },
+        options, out, logger, [&] { return EvaluateClips(options, logger, progress); },
         [](const auto& report, const auto& stages) { return MakeEvaluationPage(report, stages); });
   }
   if (ResolveThreadCount(options.jobs) > 1) {
@@ -96,10 +110,7 @@ Status RunEvaluate(const EvaluateOptions& options, const Logger& logger, std::os
     cv::setNumThreads(1);
   }
   EvaluateOptions chosen = options;
-  if (options.protocol != EvaluationProtocol::kSyntheticVal &&
-      options.methods == EvaluateOptions().methods) {
-    chosen.methods = kDatasetMethods;
-  }
+  chosen.methods = MethodsAskedFor(options);
   const auto factory = MakeMethodFactory(chosen);
   if (!factory) {
     return Propagate(factory.error());
@@ -109,14 +120,18 @@ Status RunEvaluate(const EvaluateOptions& options, const Logger& logger, std::os
                  method.substr(0, method.find('@')));
   }
   if (options.protocol != EvaluationProtocol::kSyntheticVal) {
-    return WriteReport<PictureReport>(
-        options, out, [&] { return EvaluatePictures(chosen, *factory, logger, progress); },
+    Status written = WriteReport<PictureReport>(
+        options, out, logger, [&] { return EvaluatePictures(chosen, *factory, logger, progress); },
         [&](const auto& report, const auto& stages) {
           return MakeEvaluationPage(report, chosen, *factory, stages);
         });
+    if (written) {
+      RemoveOwnState(chosen);
+    }
+    return written;
   }
   return WriteReport<SyntheticReport>(
-      options, out, [&] { return EvaluateSynthetic(options, *factory, logger, progress); },
+      options, out, logger, [&] { return EvaluateSynthetic(options, *factory, logger, progress); },
       [&](const auto& report, const auto& stages) {
         return MakeEvaluationPage(report, options, *factory, stages);
       });

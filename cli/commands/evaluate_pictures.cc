@@ -84,10 +84,9 @@ std::string SettingsText(const EvaluateOptions& options) {
   return text;
 }
 
-// Where the state lies; empty where nothing is kept. `own`: the user did not name it.
-std::string StatePath(const EvaluateOptions& options, bool& own) {
-  own = options.state.empty();
-  if (!own) {
+// Where the state lies; empty where nothing is kept.
+std::string StatePath(const EvaluateOptions& options) {
+  if (!options.state.empty()) {
     return options.state;
   }
   const std::string& beside = options.csv.empty() ? options.json : options.csv;
@@ -128,8 +127,7 @@ Result<PictureReport> EvaluatePictures(const EvaluateOptions& options, const Met
     return Propagate(whole.error());
   }
   const FirstPictures set(**whole, options.limit);
-  bool own_state = false;
-  const std::string state_path = StatePath(options, own_state);
+  const std::string state_path = StatePath(options);
   EvaluationState state;
   if (!state_path.empty()) {
     auto opened = EvaluationState::Open(state_path, SettingsText(options));
@@ -178,11 +176,14 @@ Result<PictureReport> EvaluatePictures(const EvaluateOptions& options, const Met
   }
   report.groups =
       evaluation::SummarisePictures(report.records, static_cast<std::uint64_t>(options.seed));
-  if (own_state && !state_path.empty()) {
-    std::error_code ignored;
-    std::filesystem::remove(state_path, ignored);  // its figures are in the report now
-  }
   return report;
+}
+
+void RemoveOwnState(const EvaluateOptions& options) {
+  if (options.state.empty()) {
+    std::error_code ignored;
+    std::filesystem::remove(StatePath(options), ignored);
+  }
 }
 
 }  // namespace rsstab::cli

@@ -45,6 +45,10 @@ struct PictureReport {
     const EvaluateOptions& options, const evaluation::MethodFactory& factory, const Logger& logger,
     const evaluation::EvaluationProgress& progress = {});
 
+// Removes the state that EvaluatePictures kept without being told where, once its figures are
+// written.
+void RemoveOwnState(const EvaluateOptions& options);
+
 }  // namespace rsstab::cli
 
 #endif  // RSSTAB_CLI_COMMANDS_EVALUATE_PICTURES_H_

@@ -14,8 +14,10 @@ namespace fs = std::filesystem;
 // Also for files that are not there yet.
 bool IsSamePlace(const std::string& a, const std::string& b) {
   std::error_code ignored;
-  return fs::equivalent(a, b, ignored) ||
-         fs::weakly_canonical(a, ignored) == fs::weakly_canonical(b, ignored);
+  const auto whole = [&](const std::string& path) {
+    return fs::weakly_canonical(fs::absolute(path, ignored), ignored);
+  };
+  return fs::equivalent(a, b, ignored) || whole(a) == whole(b);
 }
 
 }  // namespace
@@ -24,13 +26,13 @@ Result<ReportFile> ReportFile::Open(const std::string& path, bool overwrite,
                                     const std::vector<std::string>& others) {
   if (path == "-") {
     return Fail(ErrorCode::kInvalidArgument,
-                "--report: name a file; standard output is for what the command itself prints");
+                "-: name a file; standard output is for what the command itself prints");
   }
   for (const std::string& other : others) {
     if (!other.empty() && other != "-" && IsSamePlace(path, other)) {
       return Fail(ErrorCode::kInvalidArgument,
-                  "{}: the report would take the place of another file of this command; choose "
-                  "another name",
+                  "{}: this would take the place of another file of this command; choose another "
+                  "name",
                   path);
     }
   }
@@ -41,11 +43,11 @@ Result<ReportFile> ReportFile::Open(const std::string& path, bool overwrite,
   return ReportFile(std::move(*file));
 }
 
-Status ReportFile::Write(const std::string& html) {
+Status ReportFile::Write(const std::string& content) {
   constexpr std::size_t kPiece = std::size_t{1} << 20U;
-  for (std::size_t begin = 0; begin < html.size(); begin += kPiece) {
-    const auto* bytes = reinterpret_cast<const std::uint8_t*>(html.data()) + begin;
-    if (file_->Write(bytes, std::min(kPiece, html.size() - begin)) < 0) {
+  for (std::size_t begin = 0; begin < content.size(); begin += kPiece) {
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(content.data()) + begin;
+    if (file_->Write(bytes, std::min(kPiece, content.size() - begin)) < 0) {
       break;  // Commit tells why
     }
   }

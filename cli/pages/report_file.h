@@ -11,8 +11,8 @@
 
 namespace rsstab::cli {
 
-// The file that --report names: opened before the work begins, so that a bad name shows at once,
-// and under its name only when it is complete.
+// A file with what a command found out (--report, --csv, --json): opened before the work begins, so
+// that a bad name shows at once, and under its name only when it is complete.
 class ReportFile {
  public:
   // `others`: files that the same command reads or writes. Errors: kInvalidArgument (exists and not
@@ -22,7 +22,7 @@ class ReportFile {
                                                const std::vector<std::string>& others);
 
   // Writes all of it and gives it its name. Errors: kIo naming the file.
-  [[nodiscard]] Status Write(const std::string& html);
+  [[nodiscard]] Status Write(const std::string& content);
 
  private:
   explicit ReportFile(std::unique_ptr<media::OutputFile> file) : file_(std::move(file)) {}

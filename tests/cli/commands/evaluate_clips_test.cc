@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <sstream>
+#include <string>
 
 #include "cli/commands/clip_method.h"
 #include "cli/commands/evaluate.h"
@@ -26,6 +26,14 @@ using Json = nlohmann::json;
 
 constexpr int kFrames = 15;
 constexpr double kReadoutS = 0.02;
+
+// Keeps what would be printed.
+EvaluationOutput Into(std::string& table) {
+  return [&table](const std::string& text) -> Status {
+    table = text;
+    return {};
+  };
+}
 
 // A folder of a simulated clip that vibrates, a real one, and a file that is no clip; made once.
 class EvaluateClipsTest : public ::testing::Test {
@@ -260,8 +268,8 @@ TEST_F(EvaluateClipsTest, WhatFailsIsNamedAndTheRestGoesOn) {
 TEST_F(EvaluateClipsTest, MistakesAreErrors) {
   const TemporaryFolder empty;
   const auto message = [](const EvaluateOptions& options) {
-    std::ostringstream out;
-    const Status status = RunEvaluate(options, SilentLogger(), out);
+    std::string table;
+    const Status status = RunEvaluate(options, SilentLogger(), Into(table));
     EXPECT_FALSE(status);
     return status ? "" : status.error().message;
   };

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <sstream>
+#include <string>
 
 #include "cli/commands/evaluate.h"
 #include "cli/commands/evaluate_methods.h"
@@ -27,6 +27,14 @@ using Json = nlohmann::json;
 
 constexpr std::uint64_t kMaxBytes = 1U << 24U;
 constexpr double kPictureWidths = 160.0 / 800.0;  // strengths are defined at 800 px
+
+// Keeps what would be printed.
+EvaluationOutput Into(std::string& table) {
+  return [&table](const std::string& text) -> Status {
+    table = text;
+    return {};
+  };
+}
 
 // A small simulated set, and the options that evaluate it.
 class EvaluatePicturesTest : public ::testing::Test {
@@ -169,6 +177,17 @@ TEST_F(EvaluatePicturesTest, AStoppedRunGoesOnWhereItWas) {
   EXPECT_EQ(done_again, 4);
   ASSERT_EQ(resumed->records.size(), 6U);
   EXPECT_EQ(CsvWithoutTimes(*resumed), CsvWithoutTimes(*whole));
+  // It goes when all is written, and not before.
+  EXPECT_TRUE(std::filesystem::exists(state));
+  std::filesystem::create_directory(evaluate_.csv);
+  std::string table;
+  EXPECT_FALSE(RunEvaluate(evaluate_, SilentLogger(), Into(table)));
+  EXPECT_EQ(table, "");  // told before the work begins
+  EXPECT_TRUE(std::filesystem::exists(state));
+  std::filesystem::remove(evaluate_.csv);
+  ASSERT_TRUE(RunEvaluate(evaluate_, SilentLogger(), Into(table)));
+  EXPECT_THAT(table, HasSubstr("all, 6 pictures"));
+  EXPECT_TRUE(std::filesystem::exists(evaluate_.csv));
   EXPECT_FALSE(std::filesystem::exists(state));
 
   // Other settings do not go on from it.
@@ -177,6 +196,60 @@ TEST_F(EvaluatePicturesTest, AStoppedRunGoesOnWhereItWas) {
   const auto other = Evaluate();
   ASSERT_FALSE(other);
   EXPECT_THAT(other.error().message, HasSubstr("other settings"));
+}
+
+TEST_F(EvaluatePicturesTest, AFileThatFailsTakesNothingWithIt) {
+  Simulate();
+  evaluate_.csv = (folder_ / "out.csv").string();
+  evaluate_.json = (folder_ / "out.json").string();
+  std::string table;
+  // The table is there before any file, and somebody takes a file's name in the meantime.
+  const Status status = RunEvaluate(evaluate_, SilentLogger(), [&](const std::string& text) {
+    table = text;
+    EXPECT_FALSE(std::filesystem::exists(evaluate_.json));
+    return WriteWholeFile(evaluate_.csv, "precious");
+  });
+  ASSERT_FALSE(status);
+  EXPECT_THAT(status.error().message, HasSubstr("out.csv"));
+  EXPECT_THAT(table, HasSubstr("all, 6 pictures"));
+  EXPECT_EQ(ReadWholeFile(evaluate_.csv, kMaxBytes).value(), "precious");
+  EXPECT_TRUE(std::filesystem::exists(evaluate_.json));
+  const std::string state = evaluate_.csv + ".state";
+  EXPECT_TRUE(std::filesystem::exists(state));
+  // The same command goes on from it.
+  std::filesystem::remove(evaluate_.csv);
+  evaluate_.overwrite = true;
+  std::int64_t pictures = 0;
+  ASSERT_TRUE(
+      RunEvaluate(evaluate_, SilentLogger(), Into(table), [&](std::int64_t, std::int64_t n) {
+        pictures += n;
+        return true;
+      }));
+  EXPECT_EQ(pictures, 0);
+  EXPECT_FALSE(std::filesystem::exists(state));
+}
+
+TEST_F(EvaluatePicturesTest, NothingIsOverwrittenUnlessToldTo) {
+  Simulate();
+  const std::string old = (folder_ / "old").string();
+  ASSERT_TRUE(WriteWholeFile(old, "precious"));
+  for (std::string EvaluateOptions::*file :
+       {&EvaluateOptions::csv, &EvaluateOptions::json, &EvaluateOptions::report}) {
+    EvaluateOptions options = evaluate_;
+    options.*file = old;
+    std::string table;
+    const Status status = RunEvaluate(options, SilentLogger(), Into(table));
+    ASSERT_FALSE(status);
+    EXPECT_THAT(status.error().message, HasSubstr("--overwrite"));
+    EXPECT_EQ(table, "");
+    EXPECT_EQ(ReadWholeFile(old, kMaxBytes).value(), "precious");
+  }
+  EvaluateOptions options = evaluate_;
+  options.csv = (folder_ / "new").string();
+  options.json = (folder_ / "./new").string();
+  std::string table;
+  EXPECT_THAT(RunEvaluate(options, SilentLogger(), Into(table)).error().message,
+              HasSubstr("another file of this command"));
 }
 
 TEST_F(EvaluatePicturesTest, TheSetIsTheSameForAnyNumberOfThreads) {
@@ -204,10 +277,10 @@ TEST_F(EvaluatePicturesTest, WithoutPhotographsStreetsArePainted) {
   simulate_.photos.clear();
   simulate_.samples = 1;
   Simulate();
-  std::ostringstream out;
-  const Status status = RunEvaluate(evaluate_, SilentLogger(), out);
+  std::string table;
+  const Status status = RunEvaluate(evaluate_, SilentLogger(), Into(table));
   ASSERT_TRUE(status) << status.error().message;
-  EXPECT_THAT(out.str(), HasSubstr("all, 1 pictures"));
+  EXPECT_THAT(table, HasSubstr("all, 1 pictures"));
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <sstream>
+#include <string>
 
 #include "cli/commands/evaluate_methods.h"
 #include "cli/commands/evaluate_pictures.h"
@@ -30,6 +30,14 @@ using ::testing::Not;
 using Json = nlohmann::json;
 
 constexpr std::uint64_t kMaxBytes = 1U << 20U;
+
+// Keeps what would be printed.
+EvaluationOutput Into(std::string& table) {
+  return [&table](const std::string& text) -> Status {
+    table = text;
+    return {};
+  };
+}
 
 Result<MethodSet> ToldMethods() {
   MethodSet set;
@@ -118,13 +126,13 @@ TEST(Evaluate, ModelsAreLoadedAndFilesWritten) {
   options.samples = 3;
   options.csv = (written / "out.csv").string();
   options.json = (written / "out.json").string();
-  std::ostringstream out;
-  const Status status = RunEvaluate(options, SilentLogger(), out);
+  std::string table;
+  const Status status = RunEvaluate(options, SilentLogger(), Into(table));
   ASSERT_TRUE(status) << status.error().message;
   for (const char* method : {"none", "regression", "sample", "mean"}) {
-    EXPECT_THAT(out.str(), HasSubstr(std::string("\n") + method + " "));
+    EXPECT_THAT(table, HasSubstr(std::string("\n") + method + " "));
   }
-  EXPECT_THAT(out.str(), Not(HasSubstr("response to a known skew")));
+  EXPECT_THAT(table, Not(HasSubstr("response to a known skew")));
   const Json json = Json::parse(ReadWholeFile(options.json, kMaxBytes).value());
   EXPECT_EQ(json["samples"], 4);
   EXPECT_TRUE(json["methods"]["mean"]["epe"].is_number());
@@ -209,8 +217,8 @@ TEST(Evaluate, MistakesAreNamed) {
   for (const Case& mistake : cases) {
     EvaluateOptions options = TinyModel(folder);
     mistake.change(options);
-    std::ostringstream out;
-    const Status status = RunEvaluate(options, SilentLogger(), out);
+    std::string table;
+    const Status status = RunEvaluate(options, SilentLogger(), Into(table));
     ASSERT_FALSE(status) << mistake.says;
     EXPECT_THAT(status.error().message, HasSubstr(mistake.says));
   }

@@ -62,6 +62,7 @@ TEST(ReportFile, TakesNoOtherFilesPlace) {
   std::filesystem::create_symlink(folder / "clip.mp4", folder / "link");
   EXPECT_EQ(open("link", "clip.mp4").error().code, ErrorCode::kInvalidArgument);
   EXPECT_TRUE(open("out.html", "clip.mp4"));
+  EXPECT_FALSE(ReportFile::Open("./not-there-yet", true, {"not-there-yet"}));
   EXPECT_FALSE(ReportFile::Open("-", true, {}));
 }
 
