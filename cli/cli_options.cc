@@ -2,8 +2,10 @@
 #include "cli/cli_options.h"
 
 #include <algorithm>
+#include <set>
 
 #include "cli/command_apps.h"
+#include "cli/commands/evaluate_check.h"
 #include "cli/help_page.h"
 #include "cli/manual_page.h"
 #include "cli/shell_completion.h"
@@ -13,6 +15,34 @@ namespace {
 
 EarlyExit UsageError(const std::string& program, const std::string& message) {
   return {kExitUsage, "", "rs-stabilize: " + message + "\nSee " + program + " --help.\n"};
+}
+
+// Long names of the options that were written.
+std::set<std::string> GivenOptions(const CLI::App& app) {
+  std::set<std::string> given;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() > 0) {
+      given.insert(option->get_lnames().begin(), option->get_lnames().end());
+    }
+  }
+  return given;
+}
+
+// What must go together, beyond the range of each option.
+Status CheckTogether(const Invocation& invocation, const CLI::App& app) {
+  if (Status status = pipeline::Validate(invocation.stabilize); !status) {
+    return status;
+  }
+  switch (invocation.command) {
+    case CommandId::kCorrect:
+      return Validate(invocation.correct);
+    case CommandId::kSimulate:
+      return Validate(invocation.simulate, GivenOptions(app));
+    case CommandId::kEvaluate:
+      return Validate(invocation.evaluate, GivenOptions(app));
+    default:
+      return {};
+  }
 }
 
 }  // namespace
@@ -53,13 +83,8 @@ std::variant<Invocation, EarlyExit> ParseCommandLine(const std::vector<std::stri
   } catch (const CLI::ParseError& error) {
     return UsageError(app->get_name(), error.what());
   }
-  if (const Status status = pipeline::Validate(invocation.stabilize); !status) {
+  if (const Status status = CheckTogether(invocation, *app); !status) {
     return UsageError(app->get_name(), status.error().message);
-  }
-  if (id == CommandId::kCorrect) {
-    if (const Status status = Validate(invocation.correct); !status) {
-      return UsageError(app->get_name(), status.error().message);
-    }
   }
   return invocation;
 }

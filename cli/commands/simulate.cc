@@ -172,7 +172,7 @@ igf::RsSimulatorOptions SimulatorOptionsFrom(const SimulateOptions& options, dou
   result.readout_s = readout_s;
   result.exposure_s = options.exposure_s;
   result.exposure_samples = options.exposure_s > 0.0 ? kBlurSamples : 1;
-  result.noise_sigma = options.image_noise;
+  result.noise_sigma = options.image_noise.value_or(0.0);
   result.noise_seed = static_cast<std::uint64_t>(options.seed);
   if (options.foreground) {
     // Crosses the view once, and the place straight ahead at half time.

@@ -65,8 +65,10 @@ OptionTable<Options> BuildTable() {
             "Focal length; overrides the angle of view.");
   table.Add(RealOption<Options>("exposure", "MS", &Options::exposure_s, {0.0, 100.0}, kMilli),
             "Time over which each row gathers light: motion blur.");
-  table.Add(RealOption<Options>("image-noise", "LEVELS", &Options::image_noise, {0.0, 50.0}),
-            "Standard deviation of the noise of each sample, in 8-bit levels.");
+  table.Add(
+      RealOption<Options>("image-noise", "LEVELS", &Options::image_noise, {0.0, 50.0}),
+      "Standard deviation of the noise of each sample, in 8-bit levels; none in clips, 2 with "
+      "--rs-real unless given.");
 
   table.Group("Gyro log");
   table.Add(RealOption<Options>("gyro-rate", "HZ", &Options::gyro_rate_hz, {10.0, 20000.0}),
@@ -105,6 +107,26 @@ OptionTable<Options> BuildTable() {
 }
 
 }  // namespace
+
+Status Validate(const SimulateOptions& options, const std::set<std::string>& given) {
+  const std::vector<const char*> useless =
+      options.rs_real
+          ? std::vector<const char*>{"image",    "motion",      "motion-gyro", "foreground",
+                                     "width",    "height",      "duration",    "fov",
+                                     "exposure", "gyro-offset", "crf"}
+          : std::vector<const char*>{"photos", "samples", "frames", "train-share", "size"};
+  for (const char* name : useless) {
+    if (given.contains(name) && options.rs_real) {
+      return Fail(ErrorCode::kInvalidArgument, "--{} is for clips: it does not go with --rs-real",
+                  name);
+    }
+    if (given.contains(name)) {
+      return Fail(ErrorCode::kInvalidArgument,
+                  "--{} is for labelled pictures: it goes with --rs-real", name);
+    }
+  }
+  return {};
+}
 
 const OptionTable<SimulateOptions>& SimulateOptionTable() {
   static const OptionTable<SimulateOptions> table = BuildTable();

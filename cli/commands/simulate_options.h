@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "igf/motion_presets.h"
@@ -38,14 +39,19 @@ struct SimulateOptions {
   double gyro_noise_rad_s = 0.0;  // standard deviation per axis and sample
   double gyro_bias_rad_s = 0.0;   // length of a bias whose direction the seed draws
 
-  bool foreground = false;   // a moving object
-  double exposure_s = 0.0;   // motion blur
-  double image_noise = 0.0;  // 8-bit levels
+  bool foreground = false;            // a moving object
+  double exposure_s = 0.0;            // motion blur
+  std::optional<double> image_noise;  // 8-bit levels; none in clips, 2 in rs-real unless given
 
   double crf = 8.0;  // of x264; 0 = lossless
   bool overwrite = false;
   int threads = 0;  // 0 = one per core
 };
+
+// Whether the options go together: single pictures have some of their own, and do without some of
+// the clips'. `given`: long names of the options that the user wrote. Errors: kInvalidArgument
+// naming the option.
+[[nodiscard]] Status Validate(const SimulateOptions& options, const std::set<std::string>& given);
 
 // All options but `output`, which is the command's positional argument.
 [[nodiscard]] const pipeline::OptionTable<SimulateOptions>& SimulateOptionTable();

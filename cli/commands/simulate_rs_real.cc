@@ -90,7 +90,7 @@ RsRealClip MakeClip(const SimulateOptions& options, Size size, int index) {
   clip.camera = Camera::Pinhole(size.width, size.height, options.focal_px.value_or(focal_px));
   clip.camera.readout_s = options.readout_s.value_or(readout_s);
   clip.frame_interval_s = 1.0 / options.fps;
-  clip.image_noise = options.image_noise > 0.0 ? options.image_noise : kUsualNoise;
+  clip.image_noise = options.image_noise.value_or(kUsualNoise);
   clip.gyro_rate_hz = options.gyro_rate_hz;
   clip.gyro_noise_rad_s = options.gyro_noise_rad_s;
   clip.gyro_bias_rad_s = options.gyro_bias_rad_s;
@@ -200,7 +200,16 @@ Status RunSimulateRsReal(const SimulateOptions& options, const Logger& logger,
       failure = Error{ErrorCode::kCancelled, "Stopped; some of the samples are written."};
     }
   });
-  return failure ? Status(Propagate(*failure)) : Status();
+  if (failure) {
+    return Propagate(*failure);
+  }
+  const int train = static_cast<int>(clips * options.train_share) * options.frames;
+  logger->info(
+      "simulate: {} pictures of {} x {} ({} of train, {} of test) with truth, motion field, "
+      "camera and gyro log, in {}",
+      clips * options.frames, size->width, size->height, train, clips * options.frames - train,
+      options.output);
+  return {};
 }
 
 }  // namespace rsstab::cli

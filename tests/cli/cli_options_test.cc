@@ -4,9 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <set>
 #include <sstream>
 
 #include "cli/command_apps.h"
+#include "cli/commands/clip_method.h"
+#include "cli/commands/evaluate_methods.h"
+#include "cli/commands/method_list.h"
 
 namespace rsstab::cli {
 namespace {
@@ -158,16 +162,74 @@ TEST(CliOptions, WrongUsageIsExitCodeTwoAndOneSentence) {
       {"correct"},
       {"correct", "a.jpg"},
       {"correct", "a.jpg", "-o", "b", "--eta", "2"},
+      {"evaluate"},
+      {"evaluate", "--protocol", "rs-real"},
+      {"evaluate", "--dataset", "rs-real:set", "--photos", "photos"},
+      {"evaluate", "--photos", "photos", "--clips", "clips"},
+      {"evaluate", "--dataset", "clips:clips", "--clips", "other"},
+      {"evaluate", "--dataset", "rs-real:set", "--protocol", "pairs"},
+      {"evaluate", "--pairs", "set"},
+      {"evaluate", "--photos", "photos", "--methods", "none,bogus"},
+      {"evaluate", "--photos", "photos", "--methods", "diffusion@speed=2"},
+      {"evaluate", "--photos", "photos", "--calibration-samples", "4"},
+      {"evaluate", "--photos", "photos", "--state", "state"},
+      {"evaluate", "--clips", "clips", "--methods", "off@smoothness=99"},
+      {"evaluate", "--clips", "clips", "--methods", "none"},
+      {"simulate", "set", "--rs-real", "--duration", "2"},
+      {"simulate", "set", "--rs-real", "--foreground"},
+      {"simulate", "clip", "--samples", "30"},
+      {"simulate", "clip", "--size", "640x480"},
       {"render"},
       {"analyze", "a.mp4", "--crf", "18"},
       {"render", "a.mp4", "--smoothness", "1"}};
   for (const auto& arguments : wrong) {
+    SCOPED_TRACE(::testing::PrintToString(arguments));
     const EarlyExit exit = Refused(arguments);
     EXPECT_EQ(exit.exit_code, kExitUsage);
     EXPECT_EQ(exit.output, "");
     EXPECT_THAT(exit.error, StartsWith("rs-stabilize: "));
     EXPECT_THAT(exit.error, HasSubstr("--help"));
   }
+}
+
+TEST(CliOptions, EvaluateTakesOneKindOfData) {
+  EXPECT_EQ(Parsed({"evaluate", "--clips", "c", "--methods", "input,off"}).evaluate.clips, "c");
+  EXPECT_EQ(Parsed({"evaluate", "--pairs", "p", "--protocol", "pairs"}).evaluate.pairs, "p");
+  EXPECT_EQ(Parsed({"evaluate", "--dataset", "rs-real:r", "--state", "s"}).evaluate.rs_real, "r");
+  EXPECT_THAT(Refused({"evaluate"}).error, HasSubstr("name --dataset, --photos or --clips"));
+}
+
+TEST(CliOptions, SimulateTakesTheOptionsOfWhatItMakes) {
+  EXPECT_EQ(
+      Parsed({"simulate", "s", "--rs-real", "--samples", "3", "--readout", "20"}).simulate.samples,
+      3);
+  EXPECT_EQ(Parsed({"simulate", "c", "--duration", "3", "--foreground"}).simulate.duration_s, 3.0);
+  EXPECT_THAT(Refused({"simulate", "s", "--rs-real", "--fov", "60"}).error, HasSubstr("--fov"));
+}
+
+TEST(CliOptions, EvaluateNamesEveryMethod) {
+  const std::string help = Refused({"evaluate", "--help"}).output;
+  const auto names_in = [](std::string list) {
+    std::erase(list, ' ');
+    std::set<std::string> names;
+    const auto methods = ParseMethodList(list);
+    EXPECT_TRUE(methods);
+    for (const MethodSpec& method : *methods) {
+      names.insert(method.name);
+    }
+    return names;
+  };
+  const std::set<std::string> all = names_in(PictureMethodNames());
+  EXPECT_TRUE(all.contains("lines"));
+  for (const std::string& name : all) {
+    EXPECT_THAT(help, ::testing::ContainsRegex("[ \n]" + name + "[ \n]"));  // what it is follows
+  }
+  for (const std::string& name : ClipMethodNames()) {
+    EXPECT_THAT(help, HasSubstr(name));
+  }
+  std::set<std::string> data_sets = names_in(kDatasetMethods);
+  data_sets.insert({"mean", "sample", "regression"});  // as the help says
+  EXPECT_EQ(data_sets, all);
 }
 
 TEST(CliOptions, HelpFitsATerminalAndNamesEveryOption) {
