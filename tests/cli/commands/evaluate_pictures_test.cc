@@ -3,9 +3,15 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
 
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "cli/commands/evaluate.h"
 #include "cli/commands/evaluate_methods.h"
@@ -271,6 +277,31 @@ TEST_F(EvaluatePicturesTest, TheSetIsTheSameForAnyNumberOfThreads) {
   again.size = "64x48";
   again.readout_s = -0.02;
   EXPECT_THAT(RunSimulate(again, SilentLogger()).error().message, HasSubstr("--readout"));
+}
+
+TEST_F(EvaluatePicturesTest, SimulateSaysWhatItWrote) {
+  simulate_.samples = 4;
+  simulate_.train_share = 0.25;
+  std::ostringstream lines;
+  const auto sink = std::make_shared<spdlog::sinks::ostream_sink_mt>(lines);
+  ASSERT_TRUE(RunSimulate(simulate_, std::make_shared<spdlog::logger>("test", sink)));
+  EXPECT_THAT(lines.str(), HasSubstr("4 pictures of 160 x 120 (1 of train, 3 of test)"));
+  EXPECT_THAT(lines.str(), HasSubstr("in " + simulate_.output));
+}
+
+TEST_F(EvaluatePicturesTest, NoNoiseIsNoNoise) {
+  simulate_.photos.clear();
+  simulate_.samples = 1;
+  std::vector<std::string> labels;
+  for (const std::optional<double> noise : {std::optional<double>(), {2.0}, {0.0}}) {
+    simulate_.image_noise = noise;
+    simulate_.overwrite = true;
+    Simulate();
+    labels.push_back(
+        ReadWholeFile((folder_ / "set/test/npz/0001.npz").string(), kMaxBytes).value());
+  }
+  EXPECT_EQ(labels[0], labels[1]);  // what is usual
+  EXPECT_NE(labels[0], labels[2]);
 }
 
 TEST_F(EvaluatePicturesTest, WithoutPhotographsStreetsArePainted) {
