@@ -140,6 +140,7 @@ Result<PictureReport> EvaluatePictures(const EvaluateOptions& options, const Met
                    state.DoneClips().size(), state_path);
     }
   }
+  bool keeps_state = true;
   PictureReport report;
   report.protocol = options.protocol == EvaluationProtocol::kPairs ? "pairs" : "rs-real";
   report.records = state.Records();
@@ -150,8 +151,11 @@ Result<PictureReport> EvaluatePictures(const EvaluateOptions& options, const Met
        state.DoneClips()},
       factory,
       [&](ClipResult clip) -> Status {
-        if (Status added = state.Add(clip); !added) {
-          return added;
+        // The figures are still good for the report.
+        if (const Status added = state.Add(clip); !added && keeps_state) {
+          logger->warn("evaluate: {} What is done from here on would be lost by a stop.",
+                       added.error().message);
+          keeps_state = false;
         }
         for (evaluation::PictureFailure& failure : clip.failures) {
           failures.emplace_back(failure.name, failure.error);

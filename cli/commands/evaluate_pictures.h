@@ -38,9 +38,10 @@ struct PictureReport {
 
 // Runs the methods that `factory` makes on RS-Real or pairs, as the options say. Pictures that
 // cannot be used are named by a warning and left out. With a state file, or with CSV or JSON beside
-// which one may lie meanwhile, a stopped run goes on where it was.
-// Errors: kInvalidArgument without a folder or for a state of other settings; those of the data set
-// and of RunPictureProtocol; the first picture's when every one failed.
+// which one may lie meanwhile, a stopped run goes on where it was; when that file can no longer be
+// written, a warning says so. Errors: kInvalidArgument without a folder or for a state of other
+// settings; those of the data set and of RunPictureProtocol; the first picture's when every one
+// failed.
 [[nodiscard]] Result<PictureReport> EvaluatePictures(
     const EvaluateOptions& options, const evaluation::MethodFactory& factory, const Logger& logger,
     const evaluation::EvaluationProgress& progress = {});

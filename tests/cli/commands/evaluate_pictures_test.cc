@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 #include <spdlog/sinks/ostream_sink.h>
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -233,6 +235,26 @@ TEST_F(EvaluatePicturesTest, AFileThatFailsTakesNothingWithIt) {
       }));
   EXPECT_EQ(pictures, 0);
   EXPECT_FALSE(std::filesystem::exists(state));
+}
+
+// A limit on the size of files fails as a full disk does.
+TEST_F(EvaluatePicturesTest, AFullDiskLeavesTheTable) {
+  Simulate();
+  evaluate_.csv = (folder_ / "out.csv").string();
+  struct rlimit usual {};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &usual), 0);
+  auto* const usual_handler = std::signal(SIGXFSZ, SIG_IGN);
+  struct rlimit tight = usual;
+  tight.rlim_cur = 1000;
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &tight), 0);
+  std::string table;
+  const Status status = RunEvaluate(evaluate_, SilentLogger(), Into(table));
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &usual), 0);
+  static_cast<void>(std::signal(SIGXFSZ, usual_handler));
+  ASSERT_FALSE(status);
+  EXPECT_THAT(status.error().message, HasSubstr("out.csv"));
+  EXPECT_THAT(table, HasSubstr("all, 6 pictures"));
+  EXPECT_FALSE(std::filesystem::exists(evaluate_.csv));
 }
 
 TEST_F(EvaluatePicturesTest, NothingIsOverwrittenUnlessToldTo) {
