@@ -57,15 +57,6 @@ struct PresetMotion::Band {
 
 std::string_view MotionPresetName(MotionPreset preset) { return FactsOf(preset).name; }
 
-std::optional<MotionPreset> MotionPresetFromName(std::string_view name) {
-  for (const PresetFacts& facts : kFacts) {
-    if (facts.name == name) {
-      return facts.preset;
-    }
-  }
-  return std::nullopt;
-}
-
 double UsualReadout(MotionPreset preset) { return FactsOf(preset).readout_s; }
 
 PresetMotion::PresetMotion(MotionPreset preset, std::uint64_t seed, double duration_s) {

@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -32,7 +31,6 @@ inline constexpr std::array<MotionPreset, 4> kMotionPresets = {
 
 // "handheld", "walking", "vibration", "fast-pan".
 [[nodiscard]] std::string_view MotionPresetName(MotionPreset preset);
-[[nodiscard]] std::optional<MotionPreset> MotionPresetFromName(std::string_view name);
 
 // The readout time that goes with the preset's figures, s.
 [[nodiscard]] double UsualReadout(MotionPreset preset);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "igf/so3_spline.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace rsstab::igf {
@@ -86,12 +85,6 @@ SplinePoint EvaluateSplineWithJacobians(const Eigen::Quaterniond& first_knot,
   point.by_knot[0] += end_from_turn;
   point.world_from_camera = first_knot * turns[0] * turns[1] * turns[2];
   return point;
-}
-
-void So3Spline::DropFirst(std::size_t count) {
-  count = std::min(count, knots_.size());
-  start_s_ = KnotTime(count);
-  knots_.erase(knots_.begin(), knots_.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
 double So3Spline::end_s() const {

@@ -65,8 +65,6 @@ class So3Spline {
   So3Spline(double start_s, double interval_s) : start_s_(start_s), interval_s_(interval_s) {}
 
   void Append(const Eigen::Quaterniond& world_from_camera) { knots_.push_back(world_from_camera); }
-  // Forgets the first `count` knots; the rest keep their times.
-  void DropFirst(std::size_t count);
 
   [[nodiscard]] double interval_s() const { return interval_s_; }
   [[nodiscard]] double KnotTime(std::size_t k) const {

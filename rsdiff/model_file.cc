@@ -303,14 +303,6 @@ Result<std::string> ReadWeights(const WeightFile& weights) {
   return bytes;
 }
 
-Status CheckWeights(const WeightFile& weights) {
-  const Result<std::string> bytes = ReadWeights(weights);
-  if (!bytes) {
-    return Propagate(bytes.error());
-  }
-  return {};
-}
-
 Result<std::string> Sha256(const std::string& bytes) {
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
   unsigned int length = 0;

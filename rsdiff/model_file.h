@@ -90,9 +90,6 @@ struct ModelInfo {
 // Errors: kNotFound, kIo; kCorruptData when the checksum differs.
 [[nodiscard]] Result<std::string> ReadWeights(const WeightFile& weights);
 
-// As ReadWeights, for libraries that open the file themselves: the check only.
-[[nodiscard]] Status CheckWeights(const WeightFile& weights);
-
 // SHA-256 of some bytes, 64 lower-case hexadecimal digits.
 [[nodiscard]] Result<std::string> Sha256(const std::string& bytes);
 

@@ -33,11 +33,6 @@ inline constexpr double kReferenceWidthPx = 640.0;
   return {(pixel.x() + 0.5 - width / 2.0) / width, (pixel.y() + 0.5 - height / 2.0) / width};
 }
 
-[[nodiscard]] inline Eigen::Vector2d ToPixels(const Eigen::Vector2d& normalized, int width,
-                                              int height) {
-  return {normalized.x() * width + width / 2.0 - 0.5, normalized.y() * width + height / 2.0 - 0.5};
-}
-
 }  // namespace rsstab::stabilizer
 
 #endif  // RSSTAB_STABILIZER_NORMALIZED_COORDINATES_H_

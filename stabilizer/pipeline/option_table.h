@@ -56,8 +56,8 @@ class OptionTableBuilder {
     spec.stage = stage_;
     table_.push_back(std::move(spec));
   }
-  void Add(OptionSpec<Options> spec, std::string help) {
-    spec.help = std::move(help);
+  void Add(OptionSpec<Options> spec, const std::string& help) {
+    spec.help = help;
     Add(std::move(spec));
   }
   [[nodiscard]] OptionTable<Options> Take() { return std::move(table_); }

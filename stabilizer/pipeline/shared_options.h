@@ -26,6 +26,7 @@ OptionSpec<Options> ModelOption(std::string Options::*field) {
 template <typename Options>
 OptionSpec<Options> DeviceOption(std::string Options::*field) {
   std::vector<std::pair<std::string, std::string>> choices;
+  choices.reserve(rsdiff::kDeviceNames.size());
   for (const char* device : rsdiff::kDeviceNames) {
     choices.emplace_back(device, device);
   }

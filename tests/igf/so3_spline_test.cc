@@ -113,22 +113,5 @@ TEST(So3Spline, CurveIsTheSameFromEitherEvaluation) {
   EXPECT_LT(r->angularDistance(four.At(0.4).world_from_camera.conjugate()), 1e-7);
 }
 
-TEST(So3Spline, DroppedKnotsLeaveTheRestWhereItWas) {
-  std::mt19937 rng(4);
-  So3Spline spline(1.0, kInterval);
-  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
-  for (int k = 0; k < 10; ++k) {
-    spline.Append(q);
-    q = q * ExpSo3(RandomVector(rng, 0.1));
-  }
-  const double t = spline.KnotTime(6) + 0.3 * kInterval;
-  const auto before = spline.CameraFromWorld(t);
-  spline.DropFirst(4);
-  const auto after = spline.CameraFromWorld(t);
-  ASSERT_TRUE(before && after);
-  EXPECT_LT(before->angularDistance(*after), 1e-7);
-  EXPECT_NEAR(spline.begin_s(), 1.0 + 5 * kInterval, kRoundOff);
-}
-
 }  // namespace
 }  // namespace rsstab::igf

@@ -66,8 +66,8 @@ TEST(ReadModelFile, ReadsACompactModelFromItsFolderOrItsFile) {
     ASSERT_EQ(info->denoisers.size(), 2U);
     EXPECT_EQ(info->denoisers[0].batch, 1);
     EXPECT_EQ(info->denoisers[1].batch, 4);
-    EXPECT_TRUE(CheckWeights(info->encoder));
-    EXPECT_TRUE(CheckWeights(info->denoisers[1]));
+    EXPECT_TRUE(ReadWeights(info->encoder));
+    EXPECT_TRUE(ReadWeights(info->denoisers[1]));
   }
 }
 
@@ -90,7 +90,7 @@ TEST(ReadModelFile, ReadsAReferenceModel) {
   EXPECT_EQ(info->sampling.eta, 0.0);
   EXPECT_EQ(info->sampling.clip_range, 1.0);
   EXPECT_EQ(info->sampling.guidance, 1.0);
-  const Status weights = CheckWeights(info->network);
+  const auto weights = ReadWeights(info->network);
   ASSERT_FALSE(weights);
   EXPECT_EQ(weights.error().code, ErrorCode::kNotFound);
   EXPECT_THAT(weights.error().message, HasSubstr("net.pt"));
