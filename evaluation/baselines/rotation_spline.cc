@@ -22,8 +22,10 @@ constexpr std::size_t kLeastTracks = 30;
 // between the same two keys.
 constexpr int kKeysPerInterval = 8;
 constexpr double kLoss_px = 1.0;
-// A key 0.02 rad off its neighbours' middle costs as much as a track that is one pixel off.
-constexpr double kBendWeight = 50.0;
+// A key 0.003 rad off its neighbours' middle costs as much as a track that is one pixel off. Motion
+// that repeats from frame to frame moves no track: with less weight, noise grows in it without
+// bound.
+constexpr double kBendWeight = 300.0;
 
 using Key = std::array<double, 3>;
 
