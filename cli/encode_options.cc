@@ -22,7 +22,7 @@ Spec PassThroughOption() {
   spec.get = [](const EncodeOptions& options) {
     std::string text;
     for (const auto& [key, value] : options.encoder_options) {
-      text += (text.empty() ? "" : " ") + key + "=" + value;
+      text += fmt::format("{}{}={}", text.empty() ? "" : " ", key, value);
     }
     return text;
   };

@@ -59,7 +59,7 @@ template <typename Job>
 Status RunAsPass(const CommandContext& context, const char* name, const char* unit,
                  const Job& job) {
   OnePass pass(context, name, unit);
-  const Status status =
+  Status status =
       job([&pass](std::int64_t done, std::int64_t frames) { return pass.Update(done, frames); });
   if (status) {
     pass.End();

@@ -46,6 +46,7 @@ bool CanHaveSize(const AVCodec& codec, AVPixelFormat format, int width, int heig
 
 std::string Names(const std::vector<AVPixelFormat>& formats) {
   std::vector<std::string> names;
+  names.reserve(formats.size());
   for (const AVPixelFormat format : formats) {
     names.push_back(FormatName(format));
   }
