@@ -65,7 +65,7 @@ struct CalibratedCamera {
 // Errors: kNotFound, kIo, and those of the parsers. Any thread.
 [[nodiscard]] Result<CameraProfile> ReadCameraProfile(const std::string& path);
 
-// Writes a camera JSON, completely or not at all. Errors: kIo, or an invalid camera's.
+// Writes a camera JSON, completely or not at all. Errors: of StagedFile, of an invalid camera; kIo.
 [[nodiscard]] Status WriteCameraProfile(const std::string& path, const Camera& camera);
 
 }  // namespace rsstab::igf

@@ -85,7 +85,7 @@ struct ClipAnalysis {
 // Writes beside `path` and renames in Finish(); without Finish() nothing is left. In order.
 class AnalysisWriter {
  public:
-  // Errors: kIo naming path and cause.
+  // Errors: those of StagedFile (kNotFound: no such folder), naming path and cause.
   [[nodiscard]] static Result<std::unique_ptr<AnalysisWriter>> Create(const std::string& path);
   ~AnalysisWriter();
   AnalysisWriter(const AnalysisWriter&) = delete;

@@ -110,7 +110,7 @@ TEST(CameraProfileReader, ReadsWhatItWrites) {
 
   const auto bad_place = WriteCameraProfile((folder / "absent/camera.json").string(), camera);
   ASSERT_FALSE(bad_place.has_value());
-  EXPECT_EQ(bad_place.error().code, ErrorCode::kIo);
+  EXPECT_EQ(bad_place.error().code, ErrorCode::kNotFound);
   camera.fx = -1.0;
   EXPECT_FALSE(WriteCameraProfile(path, camera).has_value());
   std::size_t files = 0;

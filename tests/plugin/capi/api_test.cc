@@ -181,7 +181,7 @@ TEST(Capi, AnalysisAppearsOnlyWhenComplete) {
   rsstab_destroy(made);
   EXPECT_FALSE(std::filesystem::exists(path));
   EXPECT_EQ(rsstab_create_analyze(options.get(), &video, "/no/such/folder/a", &made),
-            RSSTAB_ERROR_IO);
+            RSSTAB_ERROR_NOT_FOUND);
 }
 
 }  // namespace
