@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "evaluation/picture_protocol.h"
 
@@ -47,29 +48,17 @@ Status AddPictures(const PictureReport& report, const evaluation::PictureSet& se
                    const EvaluateOptions& options, const evaluation::MethodFactory& factory,
                    report::HtmlPage& html) {
   const std::size_t method = ShownMethod(report);
-  const auto chosen = ChoosePictures(report, method);
-  if (chosen.empty()) {
-    return {};
-  }
-  auto methods = factory();
-  if (!methods) {
-    return Propagate(methods.error());
-  }
-  BeginPictures(html);
-  for (const ChosenPicture& choice : chosen) {
-    const PictureRecord& record = report.records[choice.record];
-    const auto inspection = evaluation::InspectPicture(
-        set, record.clip, record.name, static_cast<std::uint64_t>(options.seed), *methods);
+  const auto inspect = [&](std::size_t index,
+                           evaluation::MethodSet& methods) -> Result<InspectedRecord> {
+    const PictureRecord& record = report.records[index];
+    auto inspection = evaluation::InspectPicture(set, record.clip, record.name,
+                                                 static_cast<std::uint64_t>(options.seed), methods);
     if (!inspection) {
-      return Propagate(inspection.error());
+      return Propagate(std::move(inspection.error()));
     }
-    const std::string heading =
-        record.name + ", where " + record.methods[method].method + " " + choice.reason;
-    if (Status shown = ShowPicture(*inspection, record.methods, method, heading, html); !shown) {
-      return shown;
-    }
-  }
-  return {};
+    return InspectedRecord{std::move(*inspection), record.methods, record.name};
+  };
+  return ShowPictures(ChoosePictures(report, method), method, factory, inspect, html);
 }
 
 }  // namespace rsstab::cli

@@ -162,6 +162,27 @@ Result<Showing> Show(const evaluation::PictureInspection& inspection,
   return showing;
 }
 
+Status ShowPicture(const evaluation::PictureInspection& inspection,
+                   std::span<const MethodFigures> figures, std::size_t method,
+                   const std::string& heading, report::HtmlPage& html) {
+  double full_px = 0.0;
+  const auto showing = Show(inspection, figures, method, full_px);
+  if (!showing) {
+    return Propagate(showing.error());
+  }
+  html.AddHeading(heading);
+  html.Add(showing->sliders);
+  html.Add(showing->maps);
+  html.Add(showing->fields);
+  const auto wheel = report::FieldKey(full_px);
+  const auto ramp = DifferenceColorKey();
+  if (!wheel || !ramp) {
+    return Propagate(wheel ? ramp.error() : wheel.error());
+  }
+  html.Add(std::array{*ramp, *wheel});
+  return {};
+}
+
 }  // namespace
 
 std::size_t MethodToShow(std::span<const MethodStanding> methods) {
@@ -201,31 +222,32 @@ std::vector<ChosenPicture> ChooseByGain(std::span<const std::optional<double>> g
   return chosen;
 }
 
-void BeginPictures(report::HtmlPage& html) {
+Status ShowPictures(std::span<const ChosenPicture> chosen, std::size_t method,
+                    const evaluation::MethodFactory& factory, const InspectRecord& inspect,
+                    report::HtmlPage& html) {
+  if (chosen.empty()) {
+    return {};
+  }
+  auto methods = factory();
+  if (!methods) {
+    return Propagate(methods.error());
+  }
   html.BeginSection(
       "Pictures",
       "Each result minus the truth: darker is closer to it, and grey does not count. Below, the "
       "motion fields: where each pixel of the corrected picture was taken from.");
-}
-
-Status ShowPicture(const evaluation::PictureInspection& inspection,
-                   std::span<const MethodFigures> figures, std::size_t method,
-                   const std::string& heading, report::HtmlPage& html) {
-  double full_px = 0.0;
-  const auto showing = Show(inspection, figures, method, full_px);
-  if (!showing) {
-    return Propagate(showing.error());
+  for (const ChosenPicture& choice : chosen) {
+    const auto record = inspect(choice.record, *methods);
+    if (!record) {
+      return Propagate(record.error());
+    }
+    const std::string heading =
+        record->name + ", where " + record->figures[method].method + " " + choice.reason;
+    if (Status shown = ShowPicture(record->inspection, record->figures, method, heading, html);
+        !shown) {
+      return shown;
+    }
   }
-  html.AddHeading(heading);
-  html.Add(showing->sliders);
-  html.Add(showing->maps);
-  html.Add(showing->fields);
-  const auto wheel = report::FieldKey(full_px);
-  const auto ramp = DifferenceColorKey();
-  if (!wheel || !ramp) {
-    return Propagate(wheel ? ramp.error() : wheel.error());
-  }
-  html.Add(std::array{*ramp, *wheel});
   return {};
 }
 

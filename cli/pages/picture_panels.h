@@ -3,12 +3,14 @@
 #define RSSTAB_CLI_PAGES_PICTURE_PANELS_H_
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "cli/report/html_page.h"
+#include "evaluation/motion_method.h"
 #include "evaluation/picture_protocol.h"
 #include "igf/base/result.h"
 
@@ -34,16 +36,22 @@ struct MethodStanding {
 // without a value left out.
 [[nodiscard]] std::vector<ChosenPicture> ChooseByGain(std::span<const std::optional<double>> gains);
 
-// The heading under which ShowPicture's pictures stand.
-void BeginPictures(report::HtmlPage& html);
+// What the page tells of one record: the picture with every method's answer, the figures of all
+// methods (those without an answer are left out), and what the picture is called.
+struct InspectedRecord {
+  evaluation::PictureInspection inspection;
+  std::vector<evaluation::MethodFigures> figures;
+  std::string name;
+};
+using InspectRecord =
+    std::function<Result<InspectedRecord>(std::size_t record, evaluation::MethodSet& methods)>;
 
-// Shows what the methods made of a picture: before and after, and against the truth, with sliders
-// for `method`; how each result lies on the truth; the motion fields. `figures` of all methods;
-// those without an answer are left out. Errors: those of making the pictures.
-[[nodiscard]] Status ShowPicture(const evaluation::PictureInspection& inspection,
-                                 std::span<const evaluation::MethodFigures> figures,
-                                 std::size_t method, const std::string& heading,
-                                 report::HtmlPage& html);
+// Adds a section with what the methods made of the chosen pictures: before and after, and against
+// the truth, with sliders for `method`; how each result lies on the truth; the motion fields.
+// Nothing when none is chosen. Errors: those of `factory`, `inspect` and making the pictures.
+[[nodiscard]] Status ShowPictures(std::span<const ChosenPicture> chosen, std::size_t method,
+                                  const evaluation::MethodFactory& factory,
+                                  const InspectRecord& inspect, report::HtmlPage& html);
 
 }  // namespace rsstab::cli
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace rsstab::cli {
 namespace {
@@ -68,31 +69,20 @@ std::vector<ChosenPicture> ChoosePictures(const SyntheticReport& report, std::si
 Status AddPictures(const SyntheticReport& report, const EvaluateOptions& options,
                    const evaluation::MethodFactory& factory, report::HtmlPage& html) {
   const std::size_t method = ShownMethod(report);
-  const auto chosen = ChoosePictures(report, method);
-  if (chosen.empty()) {
-    return {};
-  }
-  auto methods = factory();
-  if (!methods) {
-    return Propagate(methods.error());
-  }
-  BeginPictures(html);
-  for (const ChosenPicture& choice : chosen) {
-    const SampleRecord& record = report.samples[choice.record];
-    const auto inspection = evaluation::InspectSyntheticSample(
+  const auto inspect = [&](std::size_t index,
+                           evaluation::MethodSet& methods) -> Result<InspectedRecord> {
+    const SampleRecord& record = report.samples[index];
+    auto inspection = evaluation::InspectSyntheticSample(
         std::filesystem::path(options.photos) / record.photo, record.motion_class,
-        static_cast<std::uint64_t>(options.seed), *methods);
+        static_cast<std::uint64_t>(options.seed), methods);
     if (!inspection) {
-      return Propagate(inspection.error());
+      return Propagate(std::move(inspection.error()));
     }
-    const std::string heading = record.photo + ", " +
-                                std::string(evaluation::MotionClassName(record.motion_class)) +
-                                ", where " + record.methods[method].method + " " + choice.reason;
-    if (Status shown = ShowPicture(*inspection, FiguresOf(record), method, heading, html); !shown) {
-      return shown;
-    }
-  }
-  return {};
+    return InspectedRecord{
+        std::move(*inspection), FiguresOf(record),
+        record.photo + ", " + std::string(evaluation::MotionClassName(record.motion_class))};
+  };
+  return ShowPictures(ChoosePictures(report, method), method, factory, inspect, html);
 }
 
 }  // namespace rsstab::cli

@@ -192,7 +192,7 @@ class Drawing {
     }
     for (const double tick : x_axis_.Ticks()) {
       const double x = X(tick);
-      out_ += fmt::format("<path class=\"stub\" d=\"M{:.1f} {:.1f}v4\"/>\n", x, bottom_);
+      out_ += fmt::format("<path class=\"notch\" d=\"M{:.1f} {:.1f}v4\"/>\n", x, bottom_);
       // Nothing may stick out at the right.
       const bool at_end = x + 0.5 * TextWidth(x_axis_.Label(tick)) > chart_.width;
       Text("tick", at_end ? chart_.width : x, bottom_ + 16.0, at_end ? "end" : "middle",
@@ -324,7 +324,7 @@ std::string_view ChartStyle() {
 font-variant-numeric:tabular-nums;max-width:100%;height:auto;overflow:visible}
 .chart text{fill:var(--ink)}.chart .head{font-size:13px;font-weight:600}
 .chart .tick,.chart .axis,.chart .note{fill:var(--faint)}
-.chart path{fill:none}.chart .grid{stroke:var(--grid)}.chart .zero,.chart .stub{stroke:var(--faint)}
+.chart path{fill:none}.chart .grid{stroke:var(--grid)}.chart .zero,.chart .notch{stroke:var(--faint)}
 .chart .zero{stroke-width:.7}.chart .mark{stroke:var(--faint);stroke-dasharray:3 3}
 .chart .line{stroke:var(--c);stroke-width:1.6;stroke-linejoin:round;stroke-linecap:round}
 .chart .dashed{stroke-dasharray:5 4}.chart .dot{fill:var(--c)}
